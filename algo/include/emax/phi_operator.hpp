@@ -1,0 +1,70 @@
+// The kernel Phi on a grid of cells, applied to a signal without storing it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/modal_model.hpp"
+#include "emax/span.hpp"
+#include "emax/status.hpp"
+
+namespace emax {
+
+inline constexpr std::size_t kMaxCells = 8192;
+
+/// Phi of paper equation (5) for signals that are constant on each of N equal cells of [0, T]:
+/// E = x' Phi x, exact for such signals (no sampling of y).
+///
+/// Phi is a Toeplitz matrix (what an endless record would give) minus what the output still holds
+/// after T, a form of the modes' states at T. Both are sums over modes of decaying exponentials of
+/// the distance between cells, so one forward and one backward recursion apply Phi to a signal.
+/// About 1.5 KiB, whatever the number of cells. Errors are of the order of rounding relative to the
+/// endless record's energy.
+class PhiOperator {
+ public:
+  /// Prepares for `cells` cells on [0, `duration_s`].
+  ///
+  /// @returns
+  /// * kOk: Ready.
+  /// * kInvalidArgument: Duration not above 0 or not finite, or no cell.
+  /// * kTooManyCells: More than kMaxCells.
+  Status set(const ModalModel& model, double duration_s, std::size_t cells) noexcept;
+
+  std::size_t cells() const noexcept { return cells_; }
+  double duration_s() const noexcept { return duration_s_; }
+
+  /// product = Phi signs. `signs` holds +1, -1 (or 0); both have `cells()` elements.
+  /// Two complex products and two complex sums per mode, cell and direction.
+  void multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept;
+
+  /// product += scale * (column `cell` of Phi). Half the cost of `multiply()`.
+  void add_column(std::size_t cell, double scale, Span<double> product) const noexcept;
+
+  /// Phi(cell, cell): a product with the Gramian.
+  double diagonal(std::size_t cell) const noexcept;
+
+  /// No element of the diagonal is larger than this, which is that of an endless record; for the
+  /// energy difference, that of the sensor alone. Free of charge.
+  double diagonal_limit() const noexcept { return diagonal_limit_; }
+
+ private:
+  Complex held_after_end(std::size_t mode, const Complex* state) const noexcept;
+
+  Complex step_[kMaxModes];         // e^(p h)
+  Complex correlation_[kMaxModes];  // the Toeplitz part at distance d >= 1 is Re sum correlation
+                                    // step^(d - 1)
+  Complex end_[kMaxModes];          // response of the last cell's mode at T
+  Complex gramian_[kMaxModes][kMaxModes];
+  Complex conjugate_gramian_[kMaxModes][kMaxModes];
+  Complex pole_h_[kMaxModes];
+  double endless_diagonal_;
+  double diagonal_limit_;
+  double duration_s_;
+  std::size_t cells_;
+  std::size_t count_;
+};
+
+static_assert(std::is_trivially_copyable_v<PhiOperator>);
+
+}  // namespace emax
