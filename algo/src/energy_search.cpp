@@ -95,32 +95,41 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   cells_ = cells;
   result_ = MaximumEnergy{};
   result_.cells = cells;
+  candidate_count_ = 0;
   trace_count_ = 0;
-  found_any_ = false;
   unstorable_energy_ = 0.0;
-  next_start_ = 0;
+  next_step_ = 0;
   start_count_ = paper ? 1 : kStarts;
+  step_count_ = paper ? 1 : kStarts + kCandidates;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
   shortest_half_period_s_ = 0.5 / model.device().natural_frequency_hz;
-  if (cells <= kPhiCells) {
+  if (phi_is_stored()) {
     return fill_phi(model, settings.duration_s, cells, workspace.packed_phi());
   }
   return Status::kOk;
 }
 
 double EnergySearch::progress() const noexcept {
-  return start_count_ == 0 ? 1.0
-                           : static_cast<double>(next_start_) / static_cast<double>(start_count_);
+  return step_count_ == 0 ? 1.0
+                          : static_cast<double>(next_step_) / static_cast<double>(step_count_);
 }
 
 Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
   if (done()) {
     return Status::kOk;
   }
-  if (cells_ <= kPhiCells) {
-    return try_start(PhiMatrix(workspace.packed_phi(), cells_), model, workspace, true);
+  const std::size_t step = next_step_++;
+  if (step >= start_count_) {
+    refine_candidate(step - start_count_, model, workspace);
+  } else if (phi_is_stored()) {
+    try_start(PhiMatrix(workspace.packed_phi(), cells_), model, workspace);
+  } else {
+    try_start(operator_, model, workspace);
   }
-  return try_start(operator_, model, workspace, false);
+  // A signal with more switches than the table holds must not be passed over in silence if it beats
+  // all others.
+  const bool lost = candidate_count_ == 0 || unstorable_energy_ > result_.energy;
+  return done() && lost ? Status::kTooManySwitches : Status::kOk;
 }
 
 void EnergySearch::set_start(std::size_t index, Span<std::int8_t> signs) noexcept {
@@ -155,13 +164,12 @@ void EnergySearch::set_start(std::size_t index, Span<std::int8_t> signs) noexcep
 }
 
 template <typename Phi>
-Status EnergySearch::try_start(const Phi& phi, const ModalModel& model, GridWorkspace& workspace,
-                               bool phi_is_stored) noexcept {
+void EnergySearch::try_start(const Phi& phi, const ModalModel& model,
+                             GridWorkspace& workspace) noexcept {
   const Span<std::int8_t> signs = workspace.signs(cells_);
-  const Span<std::int8_t> best_signs = workspace.best_signs(cells_);
-  const Span<double> product = workspace.product(cells_, phi_is_stored);
+  const Span<double> product = workspace.product(cells_, phi_is_stored());
   const bool paper = settings_.method == Method::kPaper;
-  const std::size_t index = next_start_++;
+  const std::size_t index = result_.starts++;
   if (paper) {
     signs_of_column(phi, 0, signs, product);
   } else if (index >= 1 && index <= kColumnStarts) {
@@ -171,31 +179,67 @@ Status EnergySearch::try_start(const Phi& phi, const ModalModel& model, GridWork
   }
   const FixedPointResult fixed_point =
       run_fixed_point(phi, paper ? settings_.max_iterations : kClimbIterations, shift_, signs,
-                      best_signs, product, Span<double>(trace_));
+                      workspace.best_signs(cells_), product, Span<double>(trace_));
   trace_count_ =
       fixed_point.iterations + 1 < kTraceLength ? fixed_point.iterations + 1 : kTraceLength;
   if (!paper) {
     turn_single_cells(phi, signs, product);
   }
-  result_.starts = index + 1;
-  SwitchingSignal signal = result_.signal;
-  if (signal.set_signs(signs, settings_.duration_s) == Status::kOk) {
-    const double found = energy(model, signal);
-    if (!found_any_ || found > result_.energy) {
-      found_any_ = true;
-      result_.energy = found;
-      result_.signal = signal;
-      result_.iterations = fixed_point.iterations;
-      result_.at_rest = fixed_point.at_rest;
-    }
+  Candidate candidate{};
+  candidate.iterations = fixed_point.iterations;
+  candidate.at_rest = fixed_point.at_rest;
+  if (candidate.signal.set_signs(signs, settings_.duration_s) == Status::kOk) {
+    candidate.energy = energy(model, candidate.signal);
+    keep(candidate);
   } else {
     const double found = dot(signs, product);
     unstorable_energy_ = found > unstorable_energy_ ? found : unstorable_energy_;
   }
-  // A signal with more switches than the table holds that beats all others must not be passed over
-  // in silence.
-  const bool lost = !found_any_ || unstorable_energy_ > result_.energy;
-  return done() && lost ? Status::kTooManySwitches : Status::kOk;
+}
+
+void EnergySearch::take(const Candidate& candidate) noexcept {
+  result_.energy = candidate.energy;
+  result_.signal = candidate.signal;
+  result_.iterations = candidate.iterations;
+  result_.at_rest = candidate.at_rest;
+}
+
+/// Keeps the best candidates in descending order; one with the energy of another is the same
+/// signal.
+void EnergySearch::keep(const Candidate& candidate) noexcept {
+  constexpr double kSame = 1e-10;
+  std::size_t place = candidate_count_;
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    if (abs(candidate.energy - candidates_[i].energy) <= kSame * abs(candidate.energy)) {
+      return;
+    }
+    if (candidate.energy > candidates_[i].energy && place == candidate_count_) {
+      place = i;
+    }
+  }
+  if (place == kCandidates) {
+    return;
+  }
+  candidate_count_ += candidate_count_ < kCandidates ? 1 : 0;
+  for (std::size_t i = candidate_count_ - 1; i > place; --i) {
+    candidates_[i] = candidates_[i - 1];
+  }
+  candidates_[place] = candidate;
+  if (place == 0) {
+    take(candidate);
+  }
+}
+
+void EnergySearch::refine_candidate(std::size_t index, const ModalModel& model,
+                                    GridWorkspace& workspace) noexcept {
+  if (index >= candidate_count_) {
+    return;
+  }
+  Candidate& candidate = candidates_[index];
+  candidate.energy = refine(model, candidate.signal, workspace.refinement()).energy;
+  if (index == 0 || candidate.energy > result_.energy) {
+    take(candidate);
+  }
 }
 
 template std::size_t turn_single_cells(const PhiMatrix&, Span<std::int8_t>, Span<double>) noexcept;

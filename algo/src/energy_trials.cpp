@@ -2,11 +2,10 @@
 #include "emax/energy_trials.hpp"
 
 #include "emax/distributions.hpp"
+#include "emax/refinement.hpp"
 
 namespace emax {
 namespace {
-
-constexpr std::size_t kClimbIterations = 200;
 
 Accelerometer corner(const Accelerometer& estimate, const ParameterBox& box, double side) noexcept {
   return {estimate.sensitivity + side * box.sensitivity,
@@ -73,30 +72,17 @@ double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& works
   if (settings_.gain_follows) {
     (void)model_.set_gain(device.sensitivity);
   }
+  if (settings_.search.method == Method::kBest) {
+    SwitchingSignal signal = best_signal_;
+    return refine(model_, signal, workspace.refinement()).energy;
+  }
   (void)phi_.set(model_, settings_.search.duration_s, cells_);
-  const bool paper = settings_.search.method == Method::kPaper;
   const Span<std::int8_t> signs = workspace.signs(cells_);
   const Span<double> product = workspace.product(cells_, false);
-  const double cell_s = settings_.search.duration_s / static_cast<double>(cells_);
-  double shift = 0.0;
-  std::size_t max_iterations = kClimbIterations;
-  if (paper) {
-    signs_of_column(phi_, 0, signs, product);
-    max_iterations = settings_.search.max_iterations;
-  } else {
-    shift = ascent_shift(model_, cell_s);
-    for (std::size_t i = 0; i < cells_; ++i) {
-      const double middle_s = (static_cast<double>(i) + 0.5) * cell_s;
-      signs[i] = best_signal_.value(middle_s) < 0.0 ? std::int8_t{-1} : std::int8_t{1};
-    }
-  }
-  const FixedPointResult fixed_point = run_fixed_point(
-      phi_, max_iterations, shift, signs, workspace.best_signs(cells_), product, Span<double>());
-  if (paper) {
-    return fixed_point.energy;
-  }
-  turn_single_cells(phi_, signs, product);
-  return dot(signs, product);
+  signs_of_column(phi_, 0, signs, product);
+  return run_fixed_point(phi_, settings_.search.max_iterations, 0.0, signs,
+                         workspace.best_signs(cells_), product, Span<double>())
+      .energy;
 }
 
 }  // namespace emax

@@ -102,7 +102,8 @@ Status ModalModel::set(const Accelerometer& device, const Butterworth& filter,
   }
   count_ = 1 + filter_modes.count;
   fill_gramians(count_);
-  fill_static();
+  fill_sums_over_filter();
+  fill_vectors();
   return Status::kOk;
 }
 
@@ -114,7 +115,7 @@ Status ModalModel::set_device(const Accelerometer& device) noexcept {
   device_ = device;
   modes_[0] = mode_of(device);
   fill_gramians(1);
-  fill_static();
+  fill_vectors();
   return Status::kOk;
 }
 
@@ -130,7 +131,8 @@ Status ModalModel::set_gain(double gain) noexcept {
   for (std::size_t i = 0; i < filter_modes.count; ++i) {
     modes_[1 + i].residue = -filter_modes.modes[i].residue;
   }
-  fill_static();
+  fill_sums_over_filter();
+  fill_vectors();
   return Status::kOk;
 }
 
@@ -151,20 +153,59 @@ void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
   }
 }
 
-void ModalModel::fill_static() noexcept {
-  if (criterion_ == Criterion::kEnergyDifference) {
-    static_gain_[0] = device_.sensitivity;
-    for (std::size_t i = 1; i < count_; ++i) {
-      static_gain_[i] = filter_.gain;
+Complex ModalModel::gramian_row(std::size_t i, const Complex* output) const noexcept {
+  Complex sum;
+  for (std::size_t j = 0; j < count_; ++j) {
+    sum = sum + gramian_[i][j] * output[j] + conjugate_gramian_[i][j] * conj(output[j]);
+  }
+  return 0.5 * sum;
+}
+
+void ModalModel::fill_sums_over_filter() noexcept {
+  for (std::size_t i = 1; i < count_; ++i) {
+    inverse_pole_[i] = Complex{1.0, 0.0} / modes_[i].pole;
+    settled_[i] = modes_[i].residue * inverse_pole_[i];
+  }
+  for (std::size_t i = 1; i < count_; ++i) {
+    filter_settled_[i] = {};
+    filter_kernel_[i] = {};
+    for (std::size_t j = 1; j < count_; ++j) {
+      filter_settled_[i] = filter_settled_[i] + gramian_[i][j] * settled_[j] +
+                           conjugate_gramian_[i][j] * conj(settled_[j]);
+      filter_kernel_[i] = filter_kernel_[i] + gramian_[i][j] * modes_[j].residue +
+                          conjugate_gramian_[i][j] * conj(modes_[j].residue);
     }
-    static_power_ = (device_.sensitivity - filter_.gain) * (device_.sensitivity + filter_.gain);
-    return;
   }
-  const double settled = device_.sensitivity - filter_.gain;
+}
+
+void ModalModel::fill_vectors() noexcept {
+  inverse_pole_[0] = Complex{1.0, 0.0} / modes_[0].pole;
+  settled_[0] = modes_[0].residue * inverse_pole_[0];
+  Complex settled[kMaxModes];
+  Complex kernel[kMaxModes];
+  for (std::size_t i = 1; i < count_; ++i) {
+    settled[i] = filter_settled_[i] + gramian_[i][0] * settled_[0] +
+                 conjugate_gramian_[i][0] * conj(settled_[0]);
+    kernel[i] = filter_kernel_[i] + gramian_[i][0] * modes_[0].residue +
+                conjugate_gramian_[i][0] * conj(modes_[0].residue);
+  }
+  settled[0] = 2.0 * gramian_row(0, settled_);
+  for (std::size_t j = 0; j < count_; ++j) {
+    kernel[0] = kernel[0] + gramian_[0][j] * modes_[j].residue +
+                conjugate_gramian_[0][j] * conj(modes_[j].residue);
+  }
+  // What a constant unit input ends up as in the output that a mode is part of: y for the
+  // integral-square error, ya or minus yf, each with its own sign, for the energy difference.
+  const double sum = device_.sensitivity + filter_.gain;
+  const double difference = device_.sensitivity - filter_.gain;
+  const bool is_difference = criterion_ == Criterion::kEnergyDifference;
+  static_power_ = difference * (is_difference ? sum : difference);
   for (std::size_t i = 0; i < count_; ++i) {
-    static_gain_[i] = settled;
+    const double of_its_part = i == 0 ? device_.sensitivity : filter_.gain;
+    const double static_gain = is_difference ? of_its_part : difference;
+    switch_weight_[i] = 0.5 * (modes_[i].residue * settled[i]) + static_gain * settled_[i];
+    correlation_[i] = -0.5 * (modes_[i].residue * kernel[i]);
   }
-  static_power_ = settled * settled;
 }
 
 double ModalModel::impulse_response(double time_s) const noexcept {
@@ -184,8 +225,8 @@ double ModalModel::step_response(double time_s) const noexcept {
     return 0.0;
   }
   double sum = device_.sensitivity - filter_.gain;
-  for (const Mode& mode : modes()) {
-    sum += real_of_product(mode.residue / mode.pole, exp(time_s * mode.pole));
+  for (std::size_t i = 0; i < count_; ++i) {
+    sum += real_of_product(settled_[i], exp(time_s * modes_[i].pole));
   }
   return sum;
 }

@@ -6,11 +6,11 @@
 
 namespace emax {
 
-// Notation, h being the width of a cell. R(t) = integral of k(s + t) k(s) over s >= 0 is Re sum r_m
-// K_m e^(p_m t) with K_m = -1/2 sum_n (r_n G_mn + conj(r_n) H_mn), G and H the model's two
-// Gramians. Integrated over two cells at a distance of d >= 1 cells this is Re sum r K ((e^(ph) -
-// 1)/p)^2 e^(p h (d - 1)); over one cell with itself, 2 Re sum r K (e^(ph) - 1 - ph)/p^2. A cell
-// leaves r (e^(ph) - 1)/p e^(p (T - end of cell)) in mode m at T.
+// Notation, h being the width of a cell. R(t) = integral of k(s + t) k(s) over s >= 0 is
+// Re sum C_m e^(p_m t), C being the model's correlation. Integrated over two cells at a distance of
+// d >= 1 cells this is Re sum C ((e^(ph) - 1)/p)^2 e^(p h (d - 1)); over one cell with itself,
+// 2 Re sum C (e^(ph) - 1 - ph)/p^2. A cell leaves r (e^(ph) - 1)/p e^(p (T - end of cell)) in mode
+// m at T.
 
 Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t cells) noexcept {
   if (!(duration_s > 0.0) || !is_finite(duration_s) || cells == 0) {
@@ -26,21 +26,17 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   const double h = duration_s / static_cast<double>(cells);
   for (std::size_t m = 0; m < count_; ++m) {
     const Mode mode = model.modes()[m];
-    Complex kernel;
     for (std::size_t n = 0; n < count_; ++n) {
       gramian_[m][n] = model.gramian(m, n);
       conjugate_gramian_[m][n] = model.conjugate_gramian(m, n);
-      const Complex residue = model.modes()[n].residue;
-      kernel = kernel + residue * gramian_[m][n] + conj(residue) * conjugate_gramian_[m][n];
     }
-    kernel = -0.5 * kernel;
     const Complex z = h * mode.pole;
     const Complex width = h * phi1(z);
     pole_h_[m] = z;
     step_[m] = exp(z);
     end_[m] = mode.residue * width;
-    correlation_[m] = end_[m] * width * kernel;
-    endless_diagonal_ += 2.0 * h * h * real_of_product(mode.residue * kernel, phi2(z));
+    correlation_[m] = model.correlation(m) * width * width;
+    endless_diagonal_ += 2.0 * h * h * real_of_product(model.correlation(m), phi2(z));
     if (m == 0) {
       diagonal_limit_ = endless_diagonal_;
     }

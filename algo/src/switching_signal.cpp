@@ -5,34 +5,6 @@
 #include "emax/elementary.hpp"
 
 namespace emax {
-namespace {
-
-// Notation. With z_i(t) = integral of e^(p_i (t - v)) x(v) dv and x = c since the last switch, the
-// output is y = Re sum w_i + c D, w_i = r_i (z_i + c / p_i). The integral of the square of Re sum
-// w_i over an interval is F(w) at its end minus F(w) at its start, F being the Gramian form below.
-// At a switch w jumps from r (z + c/p) to r (z - c/p); F of these two differs by 4 c Re sum z_i r_i
-// H_i with H independent of the signal. So only the end and the start need F itself, and each
-// switch costs one product per mode.
-
-/// Half of the Gramian times a vector: row i of F's matrix.
-Complex gramian_row(const ModalModel& model, std::size_t i, const Complex* vector) noexcept {
-  Complex sum;
-  for (std::size_t j = 0; j < model.modes().size(); ++j) {
-    sum = sum + model.gramian(i, j) * vector[j] + model.conjugate_gramian(i, j) * conj(vector[j]);
-  }
-  return 0.5 * sum;
-}
-
-double gramian_form(const ModalModel& model, const Complex* vector) noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < model.modes().size(); ++i) {
-    sum += real_of_product(vector[i], gramian_row(model, i, vector));
-  }
-  return sum;
-}
-
-}  // namespace
-
 Status SwitchingSignal::set(Span<const double> times_s, double duration_s) noexcept {
   if (!(duration_s > 0.0) || !is_finite(duration_s)) {
     return Status::kInvalidArgument;
@@ -88,51 +60,40 @@ double SwitchingSignal::value(double time_s) const noexcept {
   return sign;
 }
 
+// With z_i(t) = integral of e^(p_i (t - v)) x(v) dv and x = c since the last switch, the output is
+// y = Re sum w_i + c D, w_i = r_i (z_i + c/p_i). The integral over an interval of the square of
+// Re sum w_i is F(w) at its end minus F(w) at its start, F(w) = Re sum_i w_i gramian_row(i, w);
+// that of 2 c D Re sum w_i is 2 c D Re sum (r_i/p_i) (z_i at the end - z_i at the start). At a
+// switch w jumps from r (z + c/p) to r (z - c/p), and F of the two differs by 4 c Re sum z_i r_i
+// gramian_row(i, r/p). Summed by parts over all intervals there remain 4 c Re sum z_i J_i at each
+// switch, half of that at T, F(r z) at T, and the settled power times T, with J_i = r_i
+// gramian_row(i, r/p) + D r_i/p_i of the model alone.
 double energy(const ModalModel& model, const SwitchingSignal& signal) noexcept {
-  const Span<const Mode> modes = model.modes();
-  const std::size_t count = modes.size();
-  Complex inverse_pole[kMaxModes];
-  Complex settled[kMaxModes];    // r / p
-  Complex at_switch[kMaxModes];  // what a switch multiplies z by: r H + D r / p
-  Complex state[kMaxModes];      // z
-  for (std::size_t i = 0; i < count; ++i) {
-    inverse_pole[i] = Complex{1.0, 0.0} / modes[i].pole;
-    settled[i] = modes[i].residue * inverse_pole[i];
-  }
-  // The linear part, 2 c D Re sum (w_end - w_start)_i / p_i, is 2 c D Re sum (r/p) (z_end -
-  // z_start): summed by parts it is 4 c D Re sum (r/p) z at each switch and 2 c D Re sum (r/p) z at
-  // the end.
-  for (std::size_t i = 0; i < count; ++i) {
-    at_switch[i] =
-        modes[i].residue * gramian_row(model, i, settled) + model.static_gain(i) * settled[i];
-  }
-
-  double sum = -gramian_form(model, settled) + model.static_power() * signal.duration_s();
+  const std::size_t count = model.modes().size();
+  Complex state[kMaxModes];  // z
+  double sum = model.static_power() * signal.duration_s();
   double sign = 1.0;
   double last_s = 0.0;
   for (std::size_t k = 0; k <= signal.count(); ++k) {
     const bool at_end = k == signal.count();
     const double time_s = at_end ? signal.duration_s() : signal.times_s()[k];
-    const double elapsed_s = time_s - last_s;
-    double change = 0.0;
+    double weighted = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
-      const Complex shift = sign * inverse_pole[i];
-      state[i] = exp(elapsed_s * modes[i].pole) * (state[i] + shift) - shift;
-      change += real_of_product(state[i], at_switch[i]);
+      const Complex shift = sign * model.inverse_pole(i);
+      state[i] = exp((time_s - last_s) * model.modes()[i].pole) * (state[i] + shift) - shift;
+      weighted += real_of_product(state[i], model.switch_weight(i));
     }
-    if (!at_end) {
-      sum += 4.0 * sign * change;
-      sign = -sign;
-    }
+    sum += (at_end ? 2.0 : 4.0) * sign * weighted;
+    sign = -sign;
     last_s = time_s;
   }
-  Complex end[kMaxModes];
-  double linear = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    end[i] = modes[i].residue * state[i] + sign * settled[i];
-    linear += model.static_gain(i) * real_of_product(settled[i], state[i]);
+    state[i] = model.modes()[i].residue * state[i];
   }
-  return sum + gramian_form(model, end) + 2.0 * sign * linear;
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += real_of_product(state[i], model.gramian_row(i, state));
+  }
+  return sum;
 }
 
 double error_output(const ModalModel& model, const SwitchingSignal& signal,

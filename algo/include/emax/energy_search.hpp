@@ -9,6 +9,7 @@
 #include "emax/modal_model.hpp"
 #include "emax/phi_buffer.hpp"
 #include "emax/phi_operator.hpp"
+#include "emax/refinement.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 #include "emax/switching_signal.hpp"
@@ -18,7 +19,7 @@ namespace emax {
 /// The number of cells up to which Phi is stored; beyond, it is applied without storing it.
 inline constexpr std::size_t kPhiCells = 128;
 
-/// Memory for signals on a grid: what every search and every trial needs while it runs, and nothing
+/// Memory for signals: what every search and every trial needs while it runs, and nothing
 /// afterwards. 83 KiB. Phi of kPhiCells cells and a product of kMaxCells cells are never needed
 /// together and share their place.
 class GridWorkspace {
@@ -29,6 +30,8 @@ class GridWorkspace {
     return phi_is_stored ? Span<double>(small_product_).first(cells)
                          : Span<double>(numbers_).first(cells);
   }
+  /// For a refinement, when neither Phi nor a product is needed any more.
+  Span<double> refinement() noexcept { return Span<double>(numbers_).first(kRefinementScratch); }
   Span<std::int8_t> signs(std::size_t cells) noexcept {
     return Span<std::int8_t>(signs_).first(cells);
   }
@@ -38,6 +41,7 @@ class GridWorkspace {
 
  private:
   static_assert(packed_size(kPhiCells) >= kMaxCells);
+  static_assert(packed_size(kPhiCells) >= kRefinementScratch);
   double numbers_[packed_size(kPhiCells)];
   double small_product_[kPhiCells];
   std::int8_t signs_[kMaxCells];
@@ -48,7 +52,7 @@ static_assert(std::is_trivially_copyable_v<GridWorkspace>);
 
 /// How the largest energy is looked for.
 enum class Method : std::uint8_t {
-  kBest,   ///< Many starts, each climbing by the fixed point and by single cells; the best of all.
+  kBest,   ///< Many starts climb by the fixed point and by single cells; the best are refined.
   kPaper,  ///< The paper's procedure to the letter: the fixed point from Phi's first column.
 };
 
@@ -63,11 +67,10 @@ struct SearchSettings {
 struct MaximumEnergy {
   double energy = 0.0;
   SwitchingSignal signal = {};
-  std::size_t cells = 0;   ///< Of the grid that was searched.
-  std::size_t starts = 0;  ///< Starting signals tried.
-  std::size_t iterations =
-      0;  ///< Of the fixed point: all of the run (kPaper) or of the best start (kBest).
-  bool at_rest = false;  ///< The fixed point of that run came to rest.
+  std::size_t cells = 0;       ///< Of the grid that was searched.
+  std::size_t starts = 0;      ///< Starting signals tried.
+  std::size_t iterations = 0;  ///< Of the fixed point, from the start that led here.
+  bool at_rest = false;        ///< That fixed point came to rest.
 };
 
 /// The number of cells of the grid of `Method::kBest`: cells of at most 1/(12 f) with f the larger
@@ -86,8 +89,9 @@ std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
 /// kBest tries, always in this order: the constant signal, 32 columns of Phi, periodic signals with
 /// 24 half-periods from that of the resonance up to T and 4 phases each, and 8 patterns of seeded
 /// random signs. From each, the fixed point runs until it rests and then single cells are turned,
-/// the most profitable one first, until no cell gains. The signal with the largest energy wins, the
-/// first of them on ties, so the result is the same on every target. 2.2 KiB beside the workspace.
+/// the most profitable one first, until no cell gains. The four best signals are then refined in
+/// continuous time, and the one with the largest energy wins; the first of them on ties, so the
+/// result is the same on every target. 11 KiB beside the workspace.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 32;
@@ -95,6 +99,7 @@ class EnergySearch {
   static constexpr std::size_t kPhases = 4;
   static constexpr std::size_t kRandomStarts = 8;
   static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods * kPhases + kRandomStarts;
+  static constexpr std::size_t kCandidates = 4;
 
   /// Lays out the grid, and fills Phi if it is to be stored. Model, settings and workspace must
   /// stay as they are until the search is done; the workspace holds Phi in between.
@@ -108,7 +113,7 @@ class EnergySearch {
   Status start(const ModalModel& model, const SearchSettings& settings,
                GridWorkspace& workspace) noexcept;
 
-  /// Tries the next starting signal.
+  /// Tries the next starting signal, or refines the next of the best ones.
   ///
   /// @returns
   /// * kOk: Tried; `done()` tells whether it was the last.
@@ -116,10 +121,10 @@ class EnergySearch {
   ///   `result()` is then the best of those that have fewer, which is not the maximum: shorten T.
   Status step(const ModalModel& model, GridWorkspace& workspace) noexcept;
 
-  bool done() const noexcept { return next_start_ == start_count_; }
+  bool done() const noexcept { return next_step_ == step_count_; }
   /// @returns From 0 to 1.
   double progress() const noexcept;
-  /// @returns The best so far.
+  /// @returns The best so far; with `done()`, the result.
   const MaximumEnergy& result() const noexcept { return result_; }
 
   /// E_0, E_1, ... of the fixed point, for a = 1: the whole run of kPaper, or that of the last
@@ -128,23 +133,36 @@ class EnergySearch {
   static constexpr std::size_t kTraceLength = 64;
 
  private:
+  struct Candidate {
+    double energy;
+    SwitchingSignal signal;
+    std::size_t iterations;
+    bool at_rest;
+  };
+
+  bool phi_is_stored() const noexcept { return cells_ <= kPhiCells; }
   void set_start(std::size_t index, Span<std::int8_t> signs) noexcept;
   template <typename Phi>
-  Status try_start(const Phi& phi, const ModalModel& model, GridWorkspace& workspace,
-                   bool phi_is_stored) noexcept;
+  void try_start(const Phi& phi, const ModalModel& model, GridWorkspace& workspace) noexcept;
+  void keep(const Candidate& candidate) noexcept;
+  void refine_candidate(std::size_t index, const ModalModel& model,
+                        GridWorkspace& workspace) noexcept;
+  void take(const Candidate& candidate) noexcept;
 
   MaximumEnergy result_;
   SearchSettings settings_;
   PhiOperator operator_;
+  Candidate candidates_[kCandidates];
   double trace_[kTraceLength];
   double shift_;
   double shortest_half_period_s_;
   double unstorable_energy_;
+  std::size_t candidate_count_;
   std::size_t trace_count_;
-  std::size_t next_start_;
+  std::size_t next_step_;
   std::size_t start_count_;
+  std::size_t step_count_;
   std::size_t cells_;
-  bool found_any_;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);

@@ -31,8 +31,8 @@ struct TrialSettings {
 /// 3t, 3t + 1 and 3t + 2 of the generator, so a result depends neither on the order of the trials
 /// nor on how they are shared out.
 ///
-/// With `Method::kBest` each trial climbs, by fixed point and single cells, from the signal that is
-/// best at the estimate, on the estimate's grid. With `Method::kPaper` each trial is a whole run of
+/// With `Method::kBest` each trial refines the signal that is best at the estimate, in continuous
+/// time, for its own device. With `Method::kPaper` each trial is a whole run of
 /// the fixed point from Phi's first column. 8 KiB beside the workspace.
 class EnergyTrials {
  public:
@@ -51,7 +51,8 @@ class EnergyTrials {
   Accelerometer device(std::uint32_t trial) noexcept;
 
   /// @returns The largest energy of one trial, for a = 1.
-  /// Two products with Phi if the signal of the estimate is the best one here too.
+  /// One to three Newton steps on the switching times with kBest; a product with Phi for each
+  /// iteration with kPaper.
   double energy(std::uint32_t trial, GridWorkspace& workspace) noexcept;
 
   /// @returns The largest energy of a given device, found as in a trial: of a corner of the box,

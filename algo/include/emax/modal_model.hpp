@@ -38,7 +38,7 @@ struct SettlingTime {
 /// modes.
 ///
 /// Mode 0 is the sensor, the others are the filter; the filter's residues carry the minus sign.
-/// About 3.5 KiB. After `set()`, a new sensor costs one row of the Gramians (`set_device()`).
+/// About 4 KiB. After `set()`, a new sensor costs one row of the Gramians (`set_device()`).
 class ModalModel {
  public:
   /// Takes over sensor, filter and criterion.
@@ -72,9 +72,16 @@ class ModalModel {
     return conjugate_gramian_[i][j];
   }
 
-  /// What a constant unit input ends up as in the output that mode i is part of, with the
-  /// criterion's sign.
-  double static_gain(std::size_t i) const noexcept { return static_gain_[i]; }
+  /// 1/2 sum_j [output_j G_ij + conj(output_j) H_ij], G and H being the two Gramians: what the
+  /// outputs of the modes at T still hold, seen from mode i.
+  Complex gramian_row(std::size_t i, const Complex* output) const noexcept;
+
+  /// 1/p_i.
+  Complex inverse_pole(std::size_t i) const noexcept { return inverse_pole_[i]; }
+  /// The autocorrelation of k at a distance t is Re sum_i correlation(i) e^(p_i t).
+  Complex correlation(std::size_t i) const noexcept { return correlation_[i]; }
+  /// What the state of mode i at a switch is multiplied by in the energy; see `energy()`.
+  Complex switch_weight(std::size_t i) const noexcept { return switch_weight_[i]; }
   /// The square of the settled output (or difference of the two squares) for a constant unit input.
   double static_power() const noexcept { return static_power_; }
 
@@ -96,12 +103,19 @@ class ModalModel {
 
  private:
   void fill_gramians(std::size_t first_row_count) noexcept;
-  void fill_static() noexcept;
+  void fill_sums_over_filter() noexcept;
+  void fill_vectors() noexcept;
 
   Mode modes_[kMaxModes];
   Complex gramian_[kMaxModes][kMaxModes];
   Complex conjugate_gramian_[kMaxModes][kMaxModes];
-  double static_gain_[kMaxModes];
+  Complex inverse_pole_[kMaxModes];
+  Complex settled_[kMaxModes];  // r / p
+  Complex correlation_[kMaxModes];
+  Complex switch_weight_[kMaxModes];
+  // Parts of the sums over modes that a new sensor does not change.
+  Complex filter_settled_[kMaxModes];
+  Complex filter_kernel_[kMaxModes];
   double static_power_;
   Accelerometer device_;
   Butterworth filter_;
