@@ -36,9 +36,9 @@ double energy_gradient(const ModalModel& model, const SwitchingSignal& signal,
 /// being the sign before switch i, is never stored: a step is found by conjugate gradients, each of
 /// which costs two recursions over the switches. Where the energy is not concave the step follows
 /// the gradient. A step that would lower the energy is shortened; two switches that meet are
-/// dropped, and so is one that reaches 0 or T. The energy never falls
-/// by more than rounding. (The energy difference has
-/// flat ridges, on which it may stop before the gradient is that of rounding.)
+/// dropped, and so is one that reaches 0 or T. The energy never falls by more than rounding. (The
+/// energy difference has flat ridges, on which it may stop before the gradient is that of
+/// rounding.)
 ///
 /// @param[in,out] signal  Any signal; refined in place.
 /// @param         scratch kRefinementScratch doubles.
