@@ -1,6 +1,8 @@
 // Many starting signals, each climbing to a maximum on the grid.
 #include "emax/energy_search.hpp"
 
+#include <limits>
+
 #include "emax/elementary.hpp"
 #include "emax/wichmann_hill.hpp"
 
@@ -97,7 +99,7 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   result_.cells = cells;
   candidate_count_ = 0;
   trace_count_ = 0;
-  unstorable_energy_ = 0.0;
+  unstorable_energy_ = -std::numeric_limits<double>::infinity();
   next_step_ = 0;
   start_count_ = paper ? 1 : kStarts;
   step_count_ = paper ? 1 : kStarts + kCandidates;

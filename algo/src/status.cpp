@@ -85,6 +85,9 @@ const char* explain(Status status) noexcept {
              "mounting.";
     case Status::kStopped:
       return "The measurement was stopped on request; start it again when ready.";
+    case Status::kDcDrift:
+      return "The offset of a channel wanders; let the sensor and its conditioner warm up and check "
+             "its cable and supply.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";
 }

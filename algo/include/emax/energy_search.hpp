@@ -42,10 +42,10 @@ class GridWorkspace {
  private:
   static_assert(packed_size(kPhiCells) >= kMaxCells);
   static_assert(packed_size(kPhiCells) >= kRefinementScratch);
-  double numbers_[packed_size(kPhiCells)];
-  double small_product_[kPhiCells];
-  std::int8_t signs_[kMaxCells];
-  std::int8_t best_signs_[kMaxCells];
+  double numbers_[packed_size(kPhiCells)] = {};
+  double small_product_[kPhiCells] = {};
+  std::int8_t signs_[kMaxCells] = {};
+  std::int8_t best_signs_[kMaxCells] = {};
 };
 
 static_assert(std::is_trivially_copyable_v<GridWorkspace>);
@@ -134,10 +134,10 @@ class EnergySearch {
 
  private:
   struct Candidate {
-    double energy;
+    double energy = 0.0;
     SwitchingSignal signal;
-    std::size_t iterations;
-    bool at_rest;
+    std::size_t iterations = 0;
+    bool at_rest = false;
   };
 
   bool phi_is_stored() const noexcept { return cells_ <= kPhiCells; }
@@ -149,20 +149,20 @@ class EnergySearch {
                         GridWorkspace& workspace) noexcept;
   void take(const Candidate& candidate) noexcept;
 
-  MaximumEnergy result_;
-  SearchSettings settings_;
-  PhiOperator operator_;
-  Candidate candidates_[kCandidates];
-  double trace_[kTraceLength];
-  double shift_;
-  double shortest_half_period_s_;
-  double unstorable_energy_;
-  std::size_t candidate_count_;
-  std::size_t trace_count_;
-  std::size_t next_step_;
-  std::size_t start_count_;
-  std::size_t step_count_;
-  std::size_t cells_;
+  MaximumEnergy result_ = {};
+  SearchSettings settings_ = {};
+  PhiOperator operator_ = {};
+  Candidate candidates_[kCandidates] = {};
+  double trace_[kTraceLength] = {};
+  double shift_ = 0.0;
+  double shortest_half_period_s_ = 0.0;
+  double unstorable_energy_ = 0.0;
+  std::size_t candidate_count_ = 0;
+  std::size_t trace_count_ = 0;
+  std::size_t next_step_ = 0;
+  std::size_t start_count_ = 0;
+  std::size_t step_count_ = 0;
+  std::size_t cells_ = 0;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);

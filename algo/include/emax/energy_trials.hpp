@@ -60,14 +60,14 @@ class EnergyTrials {
   double energy_of(const Accelerometer& device, GridWorkspace& workspace) noexcept;
 
  private:
-  ModalModel model_;
-  PhiOperator phi_;
-  SwitchingSignal best_signal_;
-  TrialSettings settings_;
-  Accelerometer estimate_;
-  WichmannHill generator_;
-  std::uint32_t next_trial_;
-  std::size_t cells_;
+  ModalModel model_ = {};
+  PhiOperator phi_ = {};
+  SwitchingSignal best_signal_ = {};
+  TrialSettings settings_ = {};
+  Accelerometer estimate_ = {};
+  WichmannHill generator_ = {};
+  std::uint32_t next_trial_ = 0;
+  std::size_t cells_ = 0;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergyTrials>);

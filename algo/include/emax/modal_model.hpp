@@ -106,21 +106,21 @@ class ModalModel {
   void fill_sums_over_filter() noexcept;
   void fill_vectors() noexcept;
 
-  Mode modes_[kMaxModes];
-  Complex gramian_[kMaxModes][kMaxModes];
-  Complex conjugate_gramian_[kMaxModes][kMaxModes];
-  Complex inverse_pole_[kMaxModes];
-  Complex settled_[kMaxModes];  // r / p
-  Complex correlation_[kMaxModes];
-  Complex switch_weight_[kMaxModes];
+  Mode modes_[kMaxModes] = {};
+  Complex gramian_[kMaxModes][kMaxModes] = {};
+  Complex conjugate_gramian_[kMaxModes][kMaxModes] = {};
+  Complex inverse_pole_[kMaxModes] = {};
+  Complex settled_[kMaxModes] = {};  // r / p
+  Complex correlation_[kMaxModes] = {};
+  Complex switch_weight_[kMaxModes] = {};
   // Parts of the sums over modes that a new sensor does not change.
-  Complex filter_settled_[kMaxModes];
-  Complex filter_kernel_[kMaxModes];
-  double static_power_;
-  Accelerometer device_;
-  Butterworth filter_;
-  std::size_t count_;
-  Criterion criterion_;
+  Complex filter_settled_[kMaxModes] = {};
+  Complex filter_kernel_[kMaxModes] = {};
+  double static_power_ = 0.0;
+  Accelerometer device_ = {};
+  Butterworth filter_ = {};
+  std::size_t count_ = 0;
+  Criterion criterion_ = {};
 };
 
 static_assert(std::is_trivially_copyable_v<ModalModel>);

@@ -44,7 +44,7 @@ class PhiMatrix {
   }
 
   Span<const double> packed_;
-  std::size_t cells_;
+  std::size_t cells_ = 0;
 };
 
 /// Fills the packed upper triangle of Phi for equal cells on [0, `duration_s`].
@@ -79,8 +79,8 @@ class PhiBuffer {
   PhiMatrix matrix() const noexcept { return PhiMatrix(packed_, cells_); }
 
  private:
-  double packed_[packed_size(kCells)];
-  std::size_t cells_;
+  double packed_[packed_size(kCells)] = {};
+  std::size_t cells_ = 0;
 };
 
 static_assert(std::is_trivially_copyable_v<PhiBuffer<2>>);

@@ -51,18 +51,18 @@ class PhiOperator {
  private:
   Complex held_after_end(std::size_t mode, const Complex* state) const noexcept;
 
-  Complex step_[kMaxModes];         // e^(p h)
-  Complex correlation_[kMaxModes];  // the Toeplitz part at distance d >= 1 is Re sum correlation
-                                    // step^(d - 1)
-  Complex end_[kMaxModes];          // response of the last cell's mode at T
-  Complex gramian_[kMaxModes][kMaxModes];
-  Complex conjugate_gramian_[kMaxModes][kMaxModes];
-  Complex pole_h_[kMaxModes];
-  double endless_diagonal_;
-  double diagonal_limit_;
-  double duration_s_;
-  std::size_t cells_;
-  std::size_t count_;
+  Complex step_[kMaxModes] = {};         // e^(p h)
+  Complex correlation_[kMaxModes] = {};  // the Toeplitz part at distance d >= 1 is Re sum
+                                         // correlation step^(d - 1)
+  Complex end_[kMaxModes] = {};          // response of the last cell's mode at T
+  Complex gramian_[kMaxModes][kMaxModes] = {};
+  Complex conjugate_gramian_[kMaxModes][kMaxModes] = {};
+  Complex pole_h_[kMaxModes] = {};
+  double endless_diagonal_ = 0.0;
+  double diagonal_limit_ = 0.0;
+  double duration_s_ = 0.0;
+  std::size_t cells_ = 0;
+  std::size_t count_ = 0;
 };
 
 static_assert(std::is_trivially_copyable_v<PhiOperator>);

@@ -41,9 +41,9 @@ class SwitchingSignal {
   double value(double time_s) const noexcept;
 
  private:
-  double times_s_[kMaxSwitches];
-  double duration_s_;
-  std::uint16_t count_;
+  double times_s_[kMaxSwitches] = {};
+  double duration_s_ = 0.0;
+  std::uint16_t count_ = 0;
 };
 
 static_assert(std::is_trivially_copyable_v<SwitchingSignal>);
