@@ -1,0 +1,54 @@
+// A console: bytes in and out, never waiting.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/span.hpp"
+
+namespace emax::hal {
+
+/// Bytes of a serial line or a socket, in the order of sending, unchanged in both directions.
+///
+/// No function waits. Bytes are `char`, as text has them; all 256 values pass.
+class ByteStream {
+ public:
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+
+  /// Takes what has come in, as much as there is room for. What came before a peer went away is
+  /// still there.
+  ///
+  /// @param[out] bytes Filled from its front; untouched behind the count returned.
+  /// @returns The number of bytes taken: 0 if nothing has come in or `bytes` is empty.
+  std::size_t read(Span<char> bytes) noexcept;
+
+  /// Hands over as many bytes from the front as there is room for now.
+  ///
+  /// @returns The number of bytes accepted; they go out without another call. 0 if there is no
+  ///          room, no peer, or nothing to send. The caller keeps the rest and tries again later.
+  std::size_t write(Span<const char> bytes) noexcept;
+
+  /// @returns False if a peer is known to be missing; a line that cannot know it says true.
+  bool connected() const noexcept { return do_connected(); }
+
+  /// @returns How many bytes came in and found no room since this was last asked. The count stays
+  ///          at its greatest value instead of starting over.
+  std::uint32_t take_lost_count() noexcept { return do_take_lost_count(); }
+
+ protected:
+  constexpr ByteStream() noexcept = default;
+  ~ByteStream() = default;
+
+ private:
+  /// As `read()`; `bytes` is not empty.
+  virtual std::size_t do_read(Span<char> bytes) noexcept = 0;
+
+  /// As `write()`; `bytes` is not empty and there is a peer.
+  virtual std::size_t do_write(Span<const char> bytes) noexcept = 0;
+
+  virtual bool do_connected() const noexcept = 0;
+  virtual std::uint32_t do_take_lost_count() noexcept = 0;
+};
+
+}  // namespace emax::hal

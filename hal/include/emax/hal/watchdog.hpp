@@ -1,0 +1,50 @@
+// The timer that resets the board when the program hangs.
+#pragma once
+
+#include <cstdint>
+
+#include "emax/status.hpp"
+
+namespace emax::hal {
+
+/// A watchdog: once started, a pause of a period between two kicks resets the board, which starts
+/// with the drive at zero.
+class Watchdog {
+ public:
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// Starts the first period. Nothing ends it but a reset.
+  ///
+  /// @returns
+  /// * kOk: `kick()` more often than every period from now on.
+  /// * kAlreadyRunning: The running period goes on; this is no kick.
+  /// * kHardwareFault: The timer did not start, or the board states a period of zero.
+  Status start() noexcept;
+
+  /// Starts the period anew. Does nothing before `start()`. Does not wait.
+  void kick() noexcept;
+
+  /// @returns The least time from a kick to the reset. Constant for the life of the object.
+  std::uint32_t period_us() const noexcept { return period_us_; }
+  bool running() const noexcept { return running_; }
+
+  /// @returns True if the board runs because its watchdog reset it; until the next reset of any
+  ///          kind.
+  bool caused_reset() const noexcept { return do_caused_reset(); }
+
+ protected:
+  constexpr explicit Watchdog(std::uint32_t period_us) noexcept : period_us_(period_us) {}
+  ~Watchdog() = default;
+
+ private:
+  /// @returns kOk or kHardwareFault.
+  virtual Status do_start() noexcept = 0;
+  virtual void do_kick() noexcept = 0;
+  virtual bool do_caused_reset() const noexcept = 0;
+
+  const std::uint32_t period_us_;
+  bool running_ = false;
+};
+
+}  // namespace emax::hal

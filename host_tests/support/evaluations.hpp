@@ -1,0 +1,101 @@
+// Devices, points and finished evaluations for the tests of the instrument.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <string>
+
+#include "emax/app/evaluation.hpp"
+
+#include "support/paper_device.hpp"
+
+namespace emax::test {
+
+/// The paper's Table 2.
+inline constexpr app::Device kTable2 = {kPaperDevice, {0.003, 6.0, 0.0004}};
+
+/// As few trials as there may be and no trend: for tests that are about something else.
+inline app::Settings quick_settings() {
+  app::Settings settings;
+  settings.trials = 1000;
+  settings.trend_count = 0;
+  return settings;
+}
+
+inline const std::string& table1_path() {
+  static const std::string path = EMAX_TEST_DATA_DIR "/djb_a1800v.csv";
+  return path;
+}
+
+/// The paper's Table 1, read with the host's own functions.
+inline FrequencyResponse table1() {
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  FrequencyResponse points;
+  std::ifstream file(table1_path());
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    ResponsePoint p;
+    std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &p.frequency_hz, &p.amplitude, &p.phase_rad,
+                &p.u_amplitude, &p.u_phase_rad);
+    p.phase_rad *= kDegree;
+    p.u_amplitude *= 0.5;
+    p.u_phase_rad *= 0.5 * kDegree;
+    (void)points.add(p);
+  }
+  return points;
+}
+
+/// 40 points of the device of Table 2 by its transfer function, with normal errors of `scatter`
+/// times the stated standard uncertainties (1 % and 0.5 degrees).
+inline FrequencyResponse synthetic_points(double scatter, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  FrequencyResponse points;
+  for (int i = 1; i <= 40; ++i) {
+    const double frequency_hz = 150.0 * i;
+    const std::complex<double> ratio(0.0, frequency_hz / 4073.0);
+    const std::complex<double> response = 1.037 / (ratio * ratio + 2.0 * 0.3182 * ratio + 1.0);
+    ResponsePoint p;
+    p.frequency_hz = frequency_hz;
+    p.u_amplitude = 0.01 * std::abs(response);
+    p.u_phase_rad = 0.5 * 3.14159265358979323846 / 180.0;
+    p.amplitude = std::abs(response) + scatter * p.u_amplitude * normal(random);
+    p.phase_rad = std::arg(response) + scatter * p.u_phase_rad * normal(random);
+    (void)points.add(p);
+  }
+  return points;
+}
+
+/// An evaluation takes 130 KiB; one is enough for a test program. Left as it is from use to use.
+inline app::Evaluation& shared_evaluation() {
+  static app::Evaluation evaluation;
+  return evaluation;
+}
+
+inline void finish(app::Evaluation& evaluation) {
+  while (!evaluation.done()) {
+    evaluation.step();
+  }
+}
+
+inline app::Evaluation& evaluated(const app::Device& device, const app::Settings& settings) {
+  app::Evaluation& evaluation = shared_evaluation();
+  if (evaluation.start_from_model(device, settings) == Status::kOk) {
+    finish(evaluation);
+  }
+  return evaluation;
+}
+
+inline app::Evaluation& evaluated(const FrequencyResponse& points, const app::Settings& settings) {
+  app::Evaluation& evaluation = shared_evaluation();
+  if (evaluation.start_from_points(points, settings) == Status::kOk) {
+    finish(evaluation);
+  }
+  return evaluation;
+}
+
+}  // namespace emax::test
