@@ -144,9 +144,10 @@ void EnergySearch::set_start(std::size_t index, Span<std::int8_t> signs) noexcep
   index -= 1 + kColumnStarts;
   if (index < kHalfPeriods * kPhases) {
     // Half-periods in equal ratios from the shortest to T; the phase delays the first switch.
-    const double steps = static_cast<double>(index / kPhases) / (kHalfPeriods - 1.0);
+    const std::size_t step = index / kPhases;
+    const double part = static_cast<double>(step) / (kHalfPeriods - 1.0);
     const double half_period_s =
-        shortest_half_period_s_ * exp(steps * log(settings_.duration_s / shortest_half_period_s_));
+        shortest_half_period_s_ * exp(part * log(settings_.duration_s / shortest_half_period_s_));
     const double phase = static_cast<double>(index % kPhases) / static_cast<double>(kPhases);
     const double cell_s = settings_.duration_s / static_cast<double>(cells_);
     for (std::size_t i = 0; i < signs.size(); ++i) {

@@ -1,0 +1,74 @@
+#!/bin/sh
+# Installs with apt-get what a fresh Debian 12 lacks to build emax, or to test it.
+set -eu
+
+usage() {
+  cat <<'TEXT'
+usage: toolchains/install.sh [host]
+
+  host   what builds and runs the program on this PC
+  none   that, and everything the tests of all configurations need
+
+Installs only what is missing; with nothing missing it needs neither root nor a network.
+TEXT
+}
+
+build_packages='cmake g++ ninja-build'
+check_packages='clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev python3 python3-numpy'
+
+if [ $# -gt 1 ]; then
+  usage >&2
+  exit 2
+fi
+case "${1-all}" in
+  host) wanted=$build_packages ;;
+  all) wanted="$build_packages $check_packages" ;;
+  -h | --help)
+    usage
+    exit 0
+    ;;
+  *)
+    echo "install.sh: '$1' is not known" >&2
+    usage >&2
+    exit 2
+    ;;
+esac
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  echo "install.sh: this is no Debian system; install what these Debian packages hold: $wanted" >&2
+  exit 1
+fi
+
+missing=''
+for package in $wanted; do
+  state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$state" = installed ] || missing="$missing $package"
+done
+if [ -z "$missing" ]; then
+  echo "install.sh: nothing to install"
+  exit 0
+fi
+echo "install.sh: missing:$missing"
+
+if [ "$(id -u)" -ne 0 ]; then
+  echo "install.sh: installing takes root; run: sudo $0${1:+ $1}" >&2
+  exit 1
+fi
+
+# Only the last lines of a failure matter; a success is one line a step.
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+step() {
+  echo "install.sh: $*"
+  if ! "$@" >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    echo "install.sh: failed: $*" >&2
+    exit 1
+  fi
+}
+
+export DEBIAN_FRONTEND=noninteractive
+step apt-get update
+# shellcheck disable=SC2086
+step apt-get install --yes --no-install-recommends $missing
+echo "install.sh: done"
