@@ -1,0 +1,538 @@
+// The report as text.
+#include "emax/app/report.hpp"
+
+#include <limits>
+
+#include "emax/app/version.hpp"
+#include "emax/elementary.hpp"
+
+#include "report_parts.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kLargeResidual = 3.0;
+constexpr std::size_t kResidualsShown = 10;
+constexpr std::size_t kTraceShown = 12;
+constexpr std::size_t kTimesPerLine = 6;
+constexpr double kQuantile99 = 2.326347874040841;  // Of N(0, 1) at 99 %.
+constexpr double kMilli = 1e3;
+constexpr double kMicro = 1e6;
+constexpr double kPercent = 100.0;
+
+const char* const kParameterNames[] = {"S", "f0", "beta"};
+const char* const kParameterUnits[] = {"V/(m/s^2)", "Hz", "1"};
+
+double square(double x) noexcept { return x * x; }
+
+/// The value that a chi-square of `dof` degrees of freedom over `dof` stays below with the
+/// probability of the normal quantile `z`; Wilson and Hilferty.
+double reduced_chi_square_quantile(std::size_t dof, double z) noexcept {
+  if (dof == 0) {
+    return 0.0;
+  }
+  const double variance = 2.0 / (9.0 * static_cast<double>(dof));
+  const double root = 1.0 - variance + z * sqrt(variance);
+  return root > 0.0 ? root * root * root : 0.0;
+}
+
+// What was put in
+
+void write_source(const Evaluation& evaluation, const char* source_name,
+                  const Measurement* measurement, TextWriter& out) noexcept {
+  label(out, "Device");
+  if (evaluation.source() == Source::kModel) {
+    out.text("parameters as given").line();
+    const Accelerometer& device = evaluation.device().estimate;
+    const ParameterBox& u = evaluation.device().u;
+    indent(out).text("S = ").exact(device.sensitivity).text(" V/(m/s^2), standard u = ");
+    out.exact(u.sensitivity).line();
+    indent(out).text("f0 = ").exact(device.natural_frequency_hz).text(" Hz, standard u = ");
+    out.exact(u.natural_frequency_hz).line();
+    indent(out)
+        .text("beta = ")
+        .exact(device.damping)
+        .text(", standard u = ")
+        .exact(u.damping)
+        .line();
+    return;
+  }
+  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  if (measurement != nullptr) {
+    out.text("measured on the ").text(measurement->simulated != nullptr ? "simulated " : "");
+    out.text("bench").line();
+  } else {
+    out.text("measured points").text(source_name == nullptr ? "" : ": ").text(source_name).line();
+  }
+  indent(out).integer(points.size()).text(" points from ").exact(points[0].frequency_hz);
+  out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
+}
+
+void write_filter(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const Settings& settings = evaluation.settings();
+  const Butterworth& filter = evaluation.model().filter();
+  label(out, "Reference filter").text("Butterworth low-pass, order ");
+  out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
+  out.exact(filter.cutoff_hz).text(" Hz").line();
+  label(out, "Filter gain").general(filter.gain, 7).text(" V/(m/s^2), ");
+  switch (settings.gain_mode) {
+    case GainMode::kAuto:
+      out.text("the estimate of S, the same in every trial");
+      break;
+    case GainMode::kFixed:
+      out.text("as given, the same in every trial");
+      break;
+    case GainMode::kTrack:
+      out.text("the estimate of S; in each trial that trial's S");
+      break;
+  }
+  out.line();
+}
+
+void write_method(const Settings& settings, TextWriter& out) noexcept {
+  label(out, "Criterion");
+  if (settings.criterion == Criterion::kIntegralSquareError) {
+    out.text("integral-square error: energy of sensor minus filter, equation (15)");
+  } else {
+    out.text("energy difference: E(sensor) minus E(filter), equations (5), (13)");
+  }
+  out.line();
+  label(out, "Method");
+  if (settings.method == Method::kBest) {
+    out.text("best: many starts, fixed point and single cells, the best refined").line();
+    return;
+  }
+  out.text("paper: fixed point from the first column of Phi, step ");
+  out.general(kMicro * settings.step_s, 10).text(" us, J = ").integer(settings.iterations).line();
+}
+
+void write_random_numbers(const Settings& settings, TextWriter& out) noexcept {
+  label(out, "Random numbers").text("Wichmann-Hill ");
+  const bool is_2006 = settings.generator == Generator::k2006;
+  out.text(is_2006 ? "2006" : "1982").text(", seed ");
+  const std::size_t count = is_2006 ? 4 : 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.text(i == 0 ? "" : ",").integer(settings.seed[i]);
+  }
+  out.line();
+}
+
+void write_input(const Evaluation& evaluation, const char* source_name,
+                 const Measurement* measurement, TextWriter& out) noexcept {
+  const Settings& settings = evaluation.settings();
+  heading(out, "WHAT WAS PUT IN");
+  write_source(evaluation, source_name, measurement, out);
+  write_filter(evaluation, out);
+  label(out, "Time T").general(kMilli * settings.duration_s, 10).text(" ms").line();
+  label(out, "Limit a").general(evaluation.limit_mps2(), 7).text(" m/s^2");
+  out.text(settings.limit_is_auto ? ", the number of S" : ", as given").line();
+  write_method(settings, out);
+  write_random_numbers(settings, out);
+}
+
+// Fit
+
+double estimate_of(const Accelerometer& device, std::size_t parameter) noexcept {
+  const double values[] = {device.sensitivity, device.natural_frequency_hz, device.damping};
+  return values[parameter];
+}
+
+void write_estimates(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const WlspDrawsResult draws = evaluation.fit_draws();
+  out.text("  ").left(11).text("parameter").right(15).text("estimate").right(15).text("u");
+  out.right(15).text("u by draws").right(15).text("U (k = 2)").text("  unit").line();
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    const double u = sqrt(evaluation.covariance(i, i));
+    const int decimals = decimals_for(u);
+    out.text("  ").left(11).text(kParameterNames[i]).right(15);
+    out.fixed(estimate_of(evaluation.device().estimate, i), decimals).right(15);
+    out.fixed(u, decimals).right(15).fixed(sqrt(draws.covariance[i][i]), decimals).right(15);
+    out.fixed(kCoverageFactor * u, decimals).text("  ").text(kParameterUnits[i]).line();
+  }
+  out.text("  u: standard uncertainty from the stated ones, by formula and by ");
+  out.integer(draws.draws).text(" Monte Carlo draws");
+  if (draws.discarded > 0) {
+    out.text(" (").integer(draws.discarded).text(" more gave no device)");
+  }
+  if (evaluation.fit().response().has_common()) {
+    out.text(",\n  both with the part that is common to all points");
+  }
+  out.line();
+}
+
+void write_truth(const Evaluation& evaluation, const Accelerometer& truth,
+                 TextWriter& out) noexcept {
+  label(out, "Truth of the bench").text("S = ").exact(truth.sensitivity);
+  out.text(" V/(m/s^2), f0 = ").exact(truth.natural_frequency_hz).text(" Hz, beta = ");
+  out.exact(truth.damping).line();
+  indent(out).text("the estimates are off by");
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    const double off = estimate_of(evaluation.device().estimate, i) - estimate_of(truth, i);
+    out.text(i == 0 ? " " : i == 1 ? ", " : " and ");
+    out.fixed(off / sqrt(evaluation.covariance(i, i)), 2);
+  }
+  out.text(" u").line();
+}
+
+void write_common_part(const Wlsp& fit, TextWriter& out) noexcept {
+  if (!fit.response().has_common()) {
+    return;
+  }
+  label(out, "Common part").fixed(kPercent * fit.response().common()[0], 4);
+  out.text(" % of every amplitude (standard u), one effect for all points").line();
+}
+
+void write_correlations(const Evaluation& evaluation, TextWriter& out) noexcept {
+  label(out, "Correlation");
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    for (std::size_t j = i + 1; j < kWlspParameters; ++j) {
+      const double scale = sqrt(evaluation.covariance(i, i) * evaluation.covariance(j, j));
+      out.text(i + j == 1 ? "" : ", ").text("r(").text(kParameterNames[i]).text(",");
+      out.text(kParameterNames[j]).text(") = ").fixed(evaluation.covariance(i, j) / scale, 3);
+    }
+  }
+  out.line();
+}
+
+void write_fit_warning(const WlspFit& fit, TextWriter& out) noexcept {
+  const double reduced = fit.chi2 / fit.dof;
+  const double limit = reduced_chi_square_limit(fit.dof);
+  if (reduced > limit) {
+    out.line().text("  WARNING: chi2/dof = ").general(reduced, 4).text(" is above ");
+    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
+    out.text(
+        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
+        "  these frequencies, or the stated uncertainties are too small. The standard\n"
+        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
+        "  then too small by about the Birge ratio of ");
+    out.general(fit.birge_ratio, 3).text(".\n");
+    out.text(
+        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
+        "  channels (a phase that grows with frequency), and that the table's uncertainties are\n"
+        "  expanded ones (k = 2).\n");
+    return;
+  }
+  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
+  if (reduced < low) {
+    out.line().text("  Note: chi2/dof is below ").general(low, 3);
+    out.text(
+        ", which one fit in a hundred undercuts: the points scatter\n"
+        "  less than the stated uncertainties say. These may be too large.\n");
+  }
+}
+
+double size_of(Complex residual) noexcept {
+  const double re = abs(residual.re);
+  const double im = abs(residual.im);
+  return re > im ? re : im;
+}
+
+/// The point with the largest residual among those after (`before`, `index`) in the order of size,
+/// equal ones in the order of frequency; the number of points if there is none.
+std::size_t next_largest(const Wlsp& fit, double before, std::size_t index) noexcept {
+  const std::size_t count = fit.response().size();
+  std::size_t next = count;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double size = size_of(fit.normalised_residual(i));
+    const bool is_after = size < before || (size == before && i > index);
+    if (is_after && size > largest) {
+      largest = size;
+      next = i;
+    }
+  }
+  return next;
+}
+
+void write_large_residuals(const Wlsp& fit, TextWriter& out) noexcept {
+  const Span<const ResponsePoint> points = fit.response().points();
+  std::size_t large = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    large += size_of(fit.normalised_residual(i)) > kLargeResidual ? 1u : 0u;
+  }
+  out.line();
+  label(out, "Large residuals").integer(large).text(" of ").integer(points.size());
+  out.text(" points are beyond 3 (normalised, of 1/K)");
+  const std::size_t shown = large < kResidualsShown ? large : kResidualsShown;
+  if (shown < large) {
+    out.text("; the ").integer(shown).text(" largest:");
+  }
+  out.line();
+  if (large == 0) {
+    return;
+  }
+  indent(out).right(13).text("frequency/Hz").right(12).text("real").right(12).text("imaginary");
+  out.line();
+  double before = std::numeric_limits<double>::infinity();
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < shown; ++i) {
+    index = next_largest(fit, before, index);
+    const Complex residual = fit.normalised_residual(index);
+    before = size_of(residual);
+    indent(out).right(13).general(points[index].frequency_hz, 7).right(12).fixed(residual.re, 1);
+    out.right(12).fixed(residual.im, 1).line();
+  }
+}
+
+void write_fit(const Evaluation& evaluation, const Measurement* measurement,
+               TextWriter& out) noexcept {
+  const WlspFit& fit = evaluation.fit().result();
+  heading(out, "FIT");
+  out.text("  S, f0 and beta by weighted least squares on 1/K, two equations for each point.\n\n");
+  write_estimates(evaluation, out);
+  out.line();
+  if (measurement != nullptr && measurement->simulated != nullptr) {
+    write_truth(evaluation, measurement->simulated->truth, out);
+  }
+  write_common_part(evaluation.fit(), out);
+  label(out, "chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
+  out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
+  label(out, "Birge ratio").general(fit.birge_ratio, 4);
+  out.text(" (1 where model and uncertainties hold)").line();
+  write_correlations(evaluation, out);
+  write_fit_warning(fit, out);
+  write_large_residuals(evaluation.fit(), out);
+}
+
+// Error system
+
+void write_error_system(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const double duration_s = evaluation.settings().duration_s;
+  const Peak peak = evaluation.peak();
+  const SettlingTime settling = evaluation.settling_time();
+  heading(out, "ERROR SYSTEM (impulse response k = sensor minus filter)");
+  label(out, "Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
+  out.fixed(kMicro * peak.time_s, 2).text(" us").line();
+  label(out, "5 % settling time");
+  if (!settling.found) {
+    out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
+    return;
+  }
+  out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
+  if (duration_s < settling.time_s) {
+    out.text(
+        "  Note: T is shorter than the settling time, so the error has not developed within T.\n"
+        "  The paper takes T from the settling time; give a longer T to compare devices.\n");
+  }
+}
+
+// Maximum energy
+
+void write_switching_times(const SwitchingSignal& signal, TextWriter& out) noexcept {
+  const Span<const double> times_s = signal.times_s();
+  label(out, "Signal").text("+a from the start, ").integer(times_s.size());
+  out.text(times_s.size() == 1 ? " switch" : " switches");
+  out.text(times_s.empty() ? "" : ", at (ms)");
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    if (i % kTimesPerLine == 0) {
+      out.line();
+      indent(out);
+    }
+    out.right(11).fixed(kMilli * times_s[i], 6);
+  }
+  out.line();
+}
+
+void write_trace(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const Span<const double> trace = evaluation.trace();
+  const double a2 = square(evaluation.limit_mps2());
+  const std::size_t shown = trace.size() < kTraceShown ? trace.size() : kTraceShown;
+  label(out, "E_0, E_1, ... (V^2 s)");
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0 && i % 4 == 0) {
+      out.line();
+      indent(out);
+    }
+    out.right(16).scientific(a2 * trace[i], 8);
+  }
+  out.text(shown < trace.size() ? " ..." : "").line();
+}
+
+void write_how_found(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const MaximumEnergy& maximum = evaluation.maximum();
+  const Settings& settings = evaluation.settings();
+  const double cell_s = settings.duration_s / static_cast<double>(maximum.cells);
+  label(out, "Found on").integer(maximum.cells).text(" cells of ");
+  out.general(kMicro * cell_s, 5).text(" us");
+  if (settings.method == Method::kPaper) {
+    out.text(maximum.at_rest ? ", at rest after " : ", not yet at rest after ");
+    out.integer(maximum.iterations).text(" iterations").line();
+    write_trace(evaluation, out);
+    return;
+  }
+  out.text(", the best of ").integer(maximum.starts).text(" starts, after ");
+  out.integer(maximum.iterations).text(" iterations").line();
+}
+
+void write_energy(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const double energy = evaluation.energy_v2s();
+  heading(out, "MAXIMUM ENERGY (at the estimates)");
+  label(out, "E").scientific(energy, 8).text(" V^2 s = ").general(kMilli * energy, 5);
+  out.text(" mV^2 s (the paper prints \"mV m^2\")").line();
+  label(out, "xi = E/(a^2 T)").general(evaluation.xi(), 7).text(" (V/(m/s^2))^2").line();
+  label(out, "rms error sqrt(E/T)");
+  if (energy >= 0.0) {
+    const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
+    const double rms = evaluation.rms_error_v();
+    out.general(rms, 5).text(" V = ").general(kPercent * rms / full, 4).text(" % of S a").line();
+  } else {
+    out.text("none, the energy difference is negative").line();
+  }
+  write_switching_times(evaluation.maximum().signal, out);
+  write_how_found(evaluation, out);
+  if (evaluation.settings().method == Method::kBest) {
+    out.text("  The best signal found. Not proven: this version computes no upper bound.\n");
+  } else {
+    out.text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
+  }
+}
+
+// Monte Carlo
+
+void write_interval(TextWriter& out, const char* name, double probability,
+                    const CoverageInterval& interval) noexcept {
+  label(out, name).scientific(interval.low, 7).text(" to ").scientific(interval.high, 7);
+  out.text(" V^2 s (").general(kPercent * probability, 6).text(" %)").line();
+}
+
+void write_adaptive(const AdaptiveResult& adaptive, TextWriter& out) noexcept {
+  label(out, "Adaptive, JCGM 101 7.9");
+  out.text(adaptive.stabilised ? "stable" : "NOT stable").text(" after ");
+  out.integer(adaptive.blocks).text(" blocks, tolerance ").general(adaptive.tolerance, 2);
+  out.text(" V^2 s").line();
+  if (!adaptive.stabilised) {
+    out.text(
+        "  WARNING: the results were not yet stable when the greatest number of blocks was\n"
+        "  reached; their last digits are uncertain.\n");
+  }
+}
+
+void write_trials(const Evaluation& evaluation, const MonteCarloResult& result,
+                  TextWriter& out) noexcept {
+  const std::uint32_t rule = minimum_trials(result.probability);
+  label(out, "Trials").integer(result.trials);
+  if (rule > 0) {
+    out.text("; rule (3), 1e4/(1 - p), asks for ").integer(rule);
+  }
+  out.line();
+  if (evaluation.settings().adaptive) {
+    write_adaptive(evaluation.adaptive(), out);
+    return;
+  }
+  if (rule == 0 || result.trials < rule) {
+    out.text(
+        "  WARNING: fewer trials than rule (3) asks for; the intervals and the maximum are\n"
+        "  less certain than their digits say.\n");
+  }
+}
+
+void write_maximum(const Evaluation& evaluation, const MonteCarloResult& result,
+                   TextWriter& out) noexcept {
+  const Accelerometer at = evaluation.device_at_maximum();
+  label(out, "E_max").scientific(result.maximum, 8).text(" V^2 s in trial ");
+  out.integer(result.trial_of_maximum).text(" (the first is 0), with").line();
+  indent(out).text("S = ").general(at.sensitivity, 8).text(" V/(m/s^2), f0 = ");
+  out.general(at.natural_frequency_hz, 8).text(" Hz, beta = ").general(at.damping, 8).line();
+}
+
+void write_monte_carlo(const Evaluation& evaluation, TextWriter& out) noexcept {
+  heading(out, "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))");
+  if (!evaluation.has_monte_carlo()) {
+    out.text("  Not run: all uncertainties are zero.\n");
+    return;
+  }
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  write_trials(evaluation, result, out);
+  write_maximum(evaluation, result, out);
+  label(out, "Mean of E").scientific(result.mean, 8).text(" V^2 s").line();
+  label(out, "u(E)").scientific(result.u, 2).text(" V^2 s, the standard deviation of the trials");
+  out.line();
+  write_interval(out, "Symmetric interval", result.probability, result.symmetric);
+  write_interval(out, "Shortest interval", result.probability, result.shortest);
+}
+
+// Trend
+
+void write_trend(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const Span<const TrendPoint> points = evaluation.trend_points();
+  heading(out, "TREND (maximum energy at the estimates against T)");
+  if (points.empty()) {
+    out.text("  Not asked for.\n");
+    return;
+  }
+  const Trend& trend = evaluation.trend();
+  const double a2 = square(evaluation.limit_mps2());
+  out.right(12).text("T/ms").right(20).text("E/(V^2 s)").right(20).text("line/(V^2 s)").line();
+  for (const TrendPoint& point : points) {
+    out.right(12).general(kMilli * point.duration_s, 8).right(20).scientific(a2 * point.energy, 8);
+    out.right(20).scientific(trend.slope * point.duration_s + trend.intercept, 8).line();
+  }
+  label(out, "Line").text("E = ").general(trend.slope, 7).text(" V^2 * T ");
+  out.text(trend.intercept < 0.0 ? "- " : "+ ").general(abs(trend.intercept), 7).text(" V^2 s");
+  out.line();
+  label(out, "Correlation").fixed(trend.correlation, 7).line();
+}
+
+void write_all(const Evaluation& evaluation, const char* source_name,
+               const Measurement* measurement, TextWriter& out) noexcept {
+  write_title(out);
+  write_input(evaluation, source_name, measurement, out);
+  if (measurement != nullptr) {
+    write_measurement_section(*measurement, out);
+  }
+  if (evaluation.source() == Source::kPoints) {
+    write_fit(evaluation, measurement, out);
+  }
+  write_error_system(evaluation, out);
+  write_energy(evaluation, out);
+  write_monte_carlo(evaluation, out);
+  write_trend(evaluation, out);
+}
+
+}  // namespace
+
+double reduced_chi_square_limit(std::size_t dof) noexcept {
+  return reduced_chi_square_quantile(dof, kQuantile99);
+}
+
+void write_title(TextWriter& out) noexcept {
+  out.text("emax report, version ").text(kVersion).line();
+  out.text(
+      "Maximum energy at the output of an accelerometer; equations by number are those of\n"
+      "K. Tomczyk, Energies 2020, 13(7), 1552.\n");
+}
+
+void write_report(const Evaluation& evaluation, const char* source_name, TextWriter& out) noexcept {
+  write_all(evaluation, source_name, nullptr, out);
+}
+
+void write_report(const Evaluation& evaluation, const Measurement& measurement,
+                  TextWriter& out) noexcept {
+  write_all(evaluation, nullptr, &measurement, out);
+}
+
+void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const Failure& failure = evaluation.failure();
+  if (failure.reason == nullptr) {
+    return;
+  }
+  out.text(failure.reason);
+  if (failure.duration_s > 0.0) {
+    out.text(" (T = ").general(failure.duration_s, 10).text(" s)");
+  }
+  if (failure.stage != Stage::kFitDraws) {
+    return;
+  }
+  const WlspFit& fit = evaluation.fit().result();
+  if (failure.status == Status::kInvertedPolarity) {
+    out.text(" (The fit gives S = ").general(fit.model.sensitivity, 5).text(" V/(m/s^2).)");
+  } else if (failure.status == Status::kOverdamped) {
+    out.text(" (The fit gives beta = ").general(fit.model.damping, 5).text(".)");
+  } else if (failure.status == Status::kNotPhysical) {
+    out.text(" (The fit gives mu1 = ").general(fit.mu[0], 5).text(", mu2 = ");
+    out.general(fit.mu[1], 5).text(", mu3 = ").general(fit.mu[2], 5);
+    out.text("; all must be above 0.)");
+  }
+}
+
+}  // namespace emax::app

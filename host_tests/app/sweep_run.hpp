@@ -1,0 +1,69 @@
+// A sweep on the simulated bench, and what its tests ask of every one.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "emax/app/sweep.hpp"
+#include "emax/sim/sim_bench.hpp"
+
+#include "hal/bench_run.hpp"
+
+namespace emax_test {
+
+/// K(j 2 pi f) from its definition.
+inline std::complex<double> response_of(const emax::sim::Device& device, double sensitivity,
+                                        double frequency_hz) {
+  const double ratio = frequency_hz / device.natural_frequency_hz;
+  return sensitivity / std::complex<double>(1.0 - ratio * ratio, 2.0 * device.damping * ratio);
+}
+
+inline std::vector<double> table1_frequencies() {
+  std::ifstream file(EMAX_TEST_DATA_DIR "/djb_a1800v.csv");
+  std::string line;
+  std::getline(file, line);
+  std::vector<double> frequencies;
+  while (std::getline(file, line)) {
+    frequencies.push_back(std::stod(line));
+  }
+  EXPECT_EQ(frequencies.size(), 42U);
+  return frequencies;
+}
+
+struct SweepRun {
+  emax::sim::SimBench bench;
+  emax::app::Sweep sweep;
+  std::uint64_t last_step_frames = 0;  ///< Of the bench, in the step that ended the sweep.
+
+  explicit SweepRun(const emax::sim::BenchSettings& settings,
+                    const emax::hal::StreamFormat& format = emax::sim::kBenchFormat)
+      : bench(format) {
+    EXPECT_EQ(bench.configure(settings), emax::Status::kOk);
+  }
+
+  void to_end(const emax::app::SweepSettings& settings) {
+    ASSERT_EQ(sweep.start(settings, bench), emax::Status::kOk);
+    while (!sweep.done()) {
+      const std::uint64_t before = bench.clock_frames();
+      sweep.step(bench);
+      last_step_frames = bench.clock_frames() - before;
+    }
+    EXPECT_FALSE(bench.running());
+    EXPECT_EQ(bench.dac().last, 0);
+  }
+
+  void expect_limits_kept(const emax::app::SweepSettings& settings) const {
+    // The 12 bits of the converter round each word by half a step, 2^19.
+    const double volt = 2147483648.0 / bench.format().drive_full_scale_v;
+    EXPECT_LE(bench.dac().max_amplitude, settings.drive_limit_v * volt);
+    EXPECT_LE(bench.dac().max_step,
+              settings.slew_v_per_s / bench.format().sample_rate_hz * volt + 0.5);
+  }
+};
+
+}  // namespace emax_test

@@ -1,0 +1,891 @@
+"""The program `emax` as its user meets it: what it prints, writes, refuses, and how it ends.
+
+usage: test_program.py PROGRAM DATA_DIRECTORY [unittest arguments]
+"""
+
+import cmath
+import csv
+import json
+import math
+import os
+import pathlib
+import pty
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = ""
+DATA = pathlib.Path()
+
+HEADER = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"
+MODEL = ["--model", "1.037,4073,0.3182,0.003,6,0.0004"]
+QUICK = ["--trials", "1000", "--trend", "none"]
+FREQUENCIES = [100.0, 200.0, 300.0, 500.0, 700.0, 800.0, 900.0, 1000.0, 1100.0, 1300.0]
+TRUTH = {"S": 1.037, "f0": 4073.0, "beta": 0.3182}
+FAULTS = {
+    "lost-block": ("lost block", "lost between two blocks"),
+    "late-block": ("late block", "check their clock"),
+    "stuck-channel": ("stuck channel", "check its converter"),
+    "saturation": ("saturated channel", "lower the conditioner's gain"),
+    "unplugged-reference": ("no reference", "check the reference sensor's cable"),
+    "unplugged-device": ("no device", "device under test carries no signal; check its cable"),
+    "swapped-channels": ("swapped channels", "check the cables"),
+    "inverted-polarity": ("inverted polarity", "swap the sensor's leads"),
+    "dc-drift": ("DC drift", "warm up"),
+}
+FILES = ["histogram.csv", "impulse_response.csv", "report.txt", "results.json", "signal.csv", "trend.csv"]
+
+
+def table(response, frequencies=FREQUENCIES) -> list[str]:
+    """Lines of a table of points; `response` gives K at a frequency in Hz."""
+    lines = [HEADER]
+    for frequency in frequencies:
+        k = response(frequency)
+        lines.append(f"{frequency!r},{abs(k)!r},{math.degrees(cmath.phase(k))!r},0.01,1.0")
+    return lines
+
+
+def second_order(sensitivity=1.0, f0=1000.0, damping=0.1):
+    return lambda f: sensitivity / (1 - (f / f0) ** 2 + 2j * damping * f / f0)
+
+
+def restore_signals() -> None:
+    """Whoever runs the tests in the background may have SIGINT ignored, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test runs in an empty directory of its own."""
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = pathlib.Path(directory.name)
+
+    def run_program(self, *arguments, **options) -> subprocess.CompletedProcess:
+        settings = {"stdin": subprocess.DEVNULL} if "input" not in options else {}
+        settings |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 100, "cwd": self.directory}
+        return subprocess.run([PROGRAM, *map(str, arguments)], check=False, **(settings | options))
+
+    def start_program(self, *arguments, **options) -> subprocess.Popen:
+        settings = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        settings |= {"cwd": self.directory, "preexec_fn": restore_signals}
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], **(settings | options))
+        self.addCleanup(process.kill)
+        return process
+
+    def succeed(self, *arguments, **options) -> str:
+        result = self.run_program(*arguments, **options)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        return result.stdout.decode("ascii")
+
+    def json_of(self, *arguments):
+        return json.loads(self.succeed("report", *arguments, "--json"))
+
+    def files(self) -> list[str]:
+        return sorted(str(path.relative_to(self.directory)) for path in self.directory.rglob("*"))
+
+    def write(self, lines, name="points.csv", end="\n") -> str:
+        content = lines if isinstance(lines, bytes) else "".join(line + end for line in lines).encode()
+        (self.directory / name).write_bytes(content)
+        return name
+
+    def assert_one_line(self, text: bytes, *words: str) -> str:
+        line = text.decode()
+        self.assertRegex(line, r"\Aemax: [ -~]+\n\Z", "exactly one printable line")
+        for word in words:
+            self.assertIn(word, line)
+        return line
+
+    def refuse(self, arguments, *words, status=2, **options) -> str:
+        """The program must refuse in one line that has these words, and must leave nothing behind."""
+        before = self.files()
+        result = self.run_program(*arguments, **options)
+        self.assertEqual((result.returncode, result.stdout or b""), (status, b""), result.stderr)
+        self.assertEqual(self.files(), before)
+        return self.assert_one_line(result.stderr, *words)
+
+    def refuse_option(self, option, value, *words, device=MODEL):
+        arguments = [*device, option] + ([] if value is None else [value])
+        return self.refuse(["report", *arguments, "--out", "out"], f"emax: {option}: ", *words)
+
+    def refuse_points(self, lines, where, *words, end="\n"):
+        """`where` is a line number, or None for the table as a whole."""
+        name = self.write(lines, end=end)
+        place = f"emax: {name}: " if where is None else f"emax: {name}:{where}: "
+        return self.refuse(["report", "--points", name, "--out", "out"], place, *words)
+
+
+class GoodPoints(ProgramTest):
+    def test_paper_table(self):
+        report = self.succeed("report", "--points", DATA / "djb_a1800v.csv", *QUICK)
+        # Weighted least squares on 1/K, computed independently with NumPy; to half a unit of the last digit given.
+        expected = {
+            "S": (1.0079, 0.0011, 5e-5, 5e-5),
+            "f0": (4057.25, 2.9, 5e-2, 6e-2),
+            "beta": (0.2462, 0.0009, 5e-5, 5e-5),
+        }
+        for name, (estimate, u, tolerance, u_tolerance) in expected.items():
+            row = re.search(rf"^ *{name} +([0-9.]+) +([0-9.]+) ", report, re.MULTILINE)
+            self.assertIsNotNone(row, name)
+            self.assertAlmostEqual(float(row[1]), estimate, delta=tolerance)
+            self.assertAlmostEqual(float(row[2]), u, delta=u_tolerance)
+        self.assertRegex(report, r"8595\b.* 81 degrees of freedom")
+        self.assertRegex(report, r"WARNING: chi2/dof = 106")
+
+    def test_paper_table_in_numbers(self):
+        model = self.json_of("--points", DATA / "djb_a1800v.csv", *QUICK)["model"]
+        # As above.
+        self.assertAlmostEqual(model["S"], 1.0079, delta=5e-5)
+        self.assertAlmostEqual(model["f0"], 4057.25, delta=5e-3)
+        self.assertAlmostEqual(model["beta"], 0.2462, delta=5e-5)
+        self.assertAlmostEqual(model["uS"], 0.0011, delta=5e-5)
+        self.assertAlmostEqual(model["uf0"], 2.9, delta=5e-2)
+        self.assertAlmostEqual(model["ubeta"], 0.0009, delta=5e-5)
+        self.assertAlmostEqual(model["chi2"], 8595, delta=0.5)
+        self.assertEqual(model["dof"], 81)
+
+    def test_exact_points_give_their_device_without_warning(self):
+        name = self.write(table(second_order(2.0, 1000.0, 0.1)))
+        model = self.json_of("--points", name, "--cutoff", "300", *QUICK)["model"]
+        # Only rounding stands between the points and the device.
+        self.assertAlmostEqual(model["S"], 2.0, delta=1e-12)
+        self.assertAlmostEqual(model["f0"], 1000.0, delta=1e-9)
+        self.assertAlmostEqual(model["beta"], 0.1, delta=1e-12)
+        self.assertEqual(model["dof"], 2 * len(FREQUENCIES) - 3)
+        report = self.succeed("report", "--points", name, "--cutoff", "300", "--trials", "200000", "--trend", "none")
+        self.assertNotIn("WARNING", report)
+
+    def test_forms_of_a_table_do_not_matter(self):
+        lines = table(second_order())
+        first, second = lines[1], lines[2]
+        expected = self.succeed("report", "--points", self.write(lines), *QUICK)
+        variants = {
+            "CR LF": "\r\n".join(lines) + "\r\n",
+            "no header": "\n".join(lines[1:]) + "\n",
+            "no line feed at the end": "\n".join(lines),
+            "comments and empty lines": "\n".join(["# a", "", *lines[:2], "", "# b, 1", *lines[2:], "#"]),
+            "byte order mark": "\ufeff" + "\n".join(lines),
+            "byte order mark, no header": "\ufeff" + "\n".join(lines[1:]),
+            "spaces": "\n".join([HEADER, " " + first.replace(",", " , ") + " ", second, *lines[3:]]),
+        }
+        for variant, text in variants.items():
+            with self.subTest(variant):
+                self.assertEqual(self.succeed("report", "--points", self.write(text.encode()), *QUICK), expected)
+
+    def test_standard_input(self):
+        text = "\n".join(table(second_order())).encode()
+        report = self.succeed("report", "--points", "-", *QUICK, input=text)
+        self.assertIn("standard input", report)
+
+    def test_most_and_fewest_points(self):
+        for count in [3, 64]:
+            with self.subTest(count):
+                frequencies = [100.0 + 1200.0 * i / (count - 1) for i in range(count)]
+                model = self.json_of("--points", self.write(table(second_order(), frequencies)), *QUICK)["model"]
+                self.assertEqual(model["dof"], 2 * count - 3)
+
+
+class BadPoints(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.lines = table(second_order())
+
+    def replaced(self, line, text):
+        """The table with another line; the header is line 1."""
+        return [*self.lines[: line - 1], text, *self.lines[line:]]
+
+    def test_files_that_are_not_there_or_not_tables(self):
+        (self.directory / "folder").mkdir()
+        self.refuse(["report", "--points", "missing.csv"], "emax: missing.csv: ", "No such file", "expected a CSV file")
+        self.refuse(["report", "--points", "missing/x.csv"], "emax: missing/x.csv: ", "No such file")
+        self.refuse(["report", "--points", "folder"], "emax: folder: ", "Is a directory", "expected a CSV file")
+        self.refuse(["report", "--points", "x" * 5000], "emax: xxx", "name too long")
+        self.refuse(["report", "--points", "a\nb"], "emax: a?b: ")
+
+    def test_empty(self):
+        self.refuse_points(b"", None, "empty", "expected")
+        self.refuse_points([HEADER], None, "expected")
+        self.refuse_points(["# nothing", "", "\r"], None, "expected")
+        self.refuse(["report", "--points", "-"], "emax: standard input: ", "empty")
+
+    def test_binary(self):
+        self.refuse_points(bytes(range(256)) * 8, 1, "expected")
+        self.refuse_points(b"\x7fELF\x02\x01\x01\x00\x00\n" * 5, 1, "expected")
+        self.refuse_points("\n".join(self.lines).encode("utf-16"), 1, "expected")
+        high = bytes(range(128, 256))
+        self.refuse_points(b"\n".join([HEADER.encode(), high, high]), 2, "expected")
+        self.refuse_points("\n".join(self.lines).encode() + b"\n\0", 12, "not a text file")
+
+    def test_too_large(self):
+        self.refuse_points(b"# comment\n" * 200_000, None, "1 MiB", "expected")
+        with open("/dev/zero", "rb") as endless:
+            self.refuse(["report", "--points", "-"], "standard input: larger than 1 MiB", stdin=endless)
+
+    def test_long_line(self):
+        self.refuse_points(self.replaced(3, "1" * 100_000), 3, "expected")
+        self.refuse_points(self.replaced(3, "200" + "," * 500_000), 3, "expected")
+
+    def test_wrong_count_of_columns(self):
+        self.refuse_points(self.replaced(4, "300,1.1,-3,0.01"), 4, "expected")
+        self.refuse_points(self.replaced(4, "300,1.1,-3,0.01,1,7"), 4, "expected")
+        self.refuse_points(self.replaced(4, "300,1.1,,0.01,1"), 4, "expected")
+        self.refuse_points(self.replaced(4, "300;1.1;-3;0.01;1"), 4, "expected")
+        self.refuse_points(self.replaced(4, "300,1.1,-3,0.01,1,"), 4, "expected")
+
+    def test_text_where_a_number_should_be(self):
+        for column in range(5):
+            cells = self.lines[5].split(",")
+            cells[column] = "abc"
+            with self.subTest(column=column):
+                self.refuse_points(self.replaced(6, ",".join(cells)), 6, "expected")
+        self.refuse_points(self.replaced(6, "500,1.3,-7.6,0.01,1.0x"), 6, "expected")
+        self.refuse_points(self.replaced(6, HEADER), 6, "expected")
+
+    def test_not_finite(self):
+        for value in ["nan", "NaN", "-nan", "inf", "-inf", "Infinity", "1e999"]:
+            for column in range(5):
+                cells = self.lines[5].split(",")
+                cells[column] = value
+                with self.subTest(value=value, column=column):
+                    self.refuse_points(self.replaced(6, ",".join(cells)), 6, "expected")
+
+    def test_not_positive(self):
+        for column in [0, 1, 3, 4]:
+            for value in ["0", "-0", "-0.01"]:
+                cells = self.lines[5].split(",")
+                cells[column] = value
+                with self.subTest(value=value, column=column):
+                    self.refuse_points(self.replaced(6, ",".join(cells)), 6, "expected")
+
+    def test_order_of_frequencies(self):
+        self.refuse_points(self.replaced(5, self.lines[2]), 5, "expected")
+        self.refuse_points(self.replaced(5, self.lines[3]), 5, "expected")
+        self.refuse_points([*self.lines, "", "# and again", *self.lines[1:]], 14, "expected")
+
+    def test_line_numbers_count_every_line(self):
+        self.refuse_points(["# a", "", *self.replaced(4, "x"), "y"], 6, "expected", end="\r\n")
+
+    def test_count_of_points(self):
+        self.refuse_points(self.lines[:2], None, "3", "expected")
+        self.refuse_points(self.lines[:3], None, "3", "expected")
+        frequencies = [100.0 + i for i in range(65)]
+        self.refuse_points(table(second_order(), frequencies), 66, "64", "expected")
+
+    def test_inverted_polarity(self):
+        response = second_order()
+        self.refuse_points(table(lambda f: -response(f)), None, "inverted polarity", "180 degrees", "S = -")
+
+    def test_negative_mu(self):
+        response = second_order()
+        self.refuse_points(table(lambda f: response(f).conjugate()), None, "cannot exist", "phases", "mu2 = -")
+        self.refuse_points(table(lambda f: 1 / (1 + (f / 1000) ** 2 + 1e-4j * f)), None, "cannot exist", "mu3 = -")
+
+    def test_overdamped(self):
+        self.refuse_points(table(second_order(damping=1.5)), None, "damping is 1 or more", "beta = 1.5")
+
+    def test_not_identifiable(self):
+        frequencies = [1000.0, 1000.0 + 2**-40, 1000.0 + 2**-39]
+        self.refuse_points(table(second_order(), frequencies), None, "do not determine", "add frequencies")
+
+    def test_uncertainties_that_leave_what_a_device_may_be(self):
+        lines = [line.replace(",0.01,1.0", ",0.4,40") for line in table(second_order(damping=0.001), FREQUENCIES[:7])]
+        self.refuse_points(lines, None, "uncertaint")
+
+
+class GoodModel(ProgramTest):
+    def test_report(self):
+        report = self.succeed("report", *MODEL, *QUICK)
+        # From DESIGN: peak of k, its time, settling time; E_max at 2 ms to the digits that a grid reaches.
+        for expected in ["17462", "51.4", "1.453"]:
+            self.assertIn(expected, report)
+
+    def test_energy_and_monte_carlo(self):
+        results = self.json_of(*MODEL, "--trials", "5000", "--trend", "none")
+        energy = results["energy"]
+        # The continuous optimum is 0.005115251; signs on 98 cells come within 1e-3 of it.
+        self.assertLess(energy["E"], 0.005115251359877)
+        self.assertGreater(energy["E"], 0.005115251 * (1 - 1e-3))
+        self.assertEqual(energy["T"], 0.002)
+        self.assertEqual(energy["a"], 1.037)
+        self.assertAlmostEqual(energy["xi"], energy["E"] / (1.037**2 * 0.002), delta=1e-15)
+        monte_carlo = results["monte_carlo"]
+        self.assertEqual(monte_carlo["trials"], 5000)
+        # The corner of the box bounds the maximum from above.
+        self.assertLess(monte_carlo["E_max"], 0.0051346992)
+        self.assertGreater(monte_carlo["E_max"], energy["E"])
+        self.assertLess(monte_carlo["mean"], monte_carlo["E_max"])
+        self.assertAlmostEqual(monte_carlo["u"], 1.1e-5, delta=1e-6)
+        at = monte_carlo["at"]
+        self.assertTrue(1.034 <= at["S"] <= 1.040 and 4067 <= at["f0"] <= 4079 and 0.3178 <= at["beta"] <= 0.3186)
+
+    def test_without_uncertainties_there_is_no_monte_carlo(self):
+        self.succeed("report", "--model", "1.037,4073,0.3182", *QUICK)
+        self.assertEqual(
+            self.json_of("--model", "1.037,4073,0.3182", *QUICK)["energy"]["E"],
+            self.json_of("--model", "1.037,4073,0.3182,0,0,0", *QUICK)["energy"]["E"],
+        )
+
+    def test_few_trials_bring_a_warning(self):
+        self.assertIn("WARNING", self.succeed("report", *MODEL, "--trials", "1000", "--trend", "none"))
+        self.assertNotIn("WARNING", self.succeed("report", *MODEL, "--trials", "200000", "--trend", "none"))
+
+    def test_trend(self):
+        trend = self.json_of(*MODEL, "--trials", "1000", "--trend", "0.001,0.002,0.003")["trend"]
+        self.assertEqual([point[0] for point in trend["points"]], [0.001, 0.002, 0.003])
+        self.assertGreater(trend["slope"], 0)
+
+    def test_fields_of_results(self):
+        results = self.json_of(*MODEL, "--trials", "1000", "--trend", "0.001,0.002")
+        self.assertLessEqual({"version", "model", "filter", "energy", "monte_carlo", "trend"}, set(results))
+        fields = {
+            "model": "S f0 beta uS uf0 ubeta covariance chi2 dof source",
+            "filter": "order cutoff gain",
+            "energy": "criterion method T a E xi rms bound switch_times iterations absolute_error",
+            "monte_carlo": "trials probability seed E_max at trial mean u interval shortest disagreements",
+            "trend": "slope intercept points",
+        }
+        for part, names in fields.items():
+            with self.subTest(part):
+                self.assertLessEqual(set(names.split()), set(results[part]))
+        self.assertEqual([len(row) for row in results["model"]["covariance"]], [3, 3, 3])
+        self.assertEqual(len(results["monte_carlo"]["seed"]), 4)
+        self.assertEqual(len(results["monte_carlo"]["interval"]), 2)
+        self.assertEqual(len(results["monte_carlo"]["shortest"]), 2)
+        self.assertEqual(set(results["monte_carlo"]["at"]), {"S", "f0", "beta"})
+
+
+class Options(ProgramTest):
+    def test_defaults_are_what_the_help_says(self):
+        defaults = ["--order", "10", "--cutoff", "1000", "--gain", "auto", "--time", "0.002", "--limit", "auto"]
+        defaults += ["--criterion", "ise", "--method", "best", "--step", "2e-6", "--iterations", "30"]
+        defaults += ["--probability", "0.95", "--seed", "123456789,345678901,567890123,789012345"]
+        defaults += ["--generator", "2006", "--distribution", "box", "--reference-uncertainty", "0"]
+        defaults += ["--trend", "0.002,0.004,0.006,0.008,0.010"]
+        report = self.succeed("report", *MODEL, "--trials", "1000")
+        self.assertEqual(self.succeed("report", *MODEL, "--trials", "1000", *defaults), report)
+        text = self.succeed("report", "--help")
+        for option, value in zip(defaults[::2], defaults[1::2]):
+            self.assertRegex(text, rf"(?s){option} .*?\(default {re.escape(value)}\)")
+
+    def test_two_forms(self):
+        spaced = self.succeed("report", *MODEL, *QUICK, "--order", "4")
+        joined = self.succeed("report", f"--model={MODEL[1]}", "--trials=1e3", "--trend=none", "--order=4")
+        self.assertEqual(joined, spaced)
+
+    def test_settings_arrive(self):
+        results = self.json_of(*MODEL, *QUICK, "--order", "3", "--cutoff", "800", "--gain", "0.5", "--time", "1e-3",
+                               "--limit", "2", "--probability", "0.9", "--seed", "1,2,3,4")  # fmt: skip
+        self.assertEqual([results["filter"][key] for key in ["order", "cutoff", "gain"]], [3, 800, 0.5])
+        self.assertEqual([results["energy"][key] for key in ["T", "a"]], [0.001, 2])
+        self.assertEqual([results["monte_carlo"][key] for key in ["probability", "seed"]], [0.9, [1, 2, 3, 4]])
+
+    def test_choices_make_a_difference(self):
+        reference = self.json_of(*MODEL, *QUICK)
+        for part, *choice in [
+            ("energy", "--criterion", "difference"),
+            ("energy", "--method", "paper"),
+            ("monte_carlo", "--gain", "track"),
+            ("monte_carlo", "--generator", "1982"),
+            ("monte_carlo", "--generator", "1982", "--seed", "1,2,3"),
+            ("monte_carlo", "--seed", "1,2,3,4"),
+            ("monte_carlo", "--adaptive"),
+        ]:
+            with self.subTest(choice):
+                self.assertNotEqual(self.json_of(*MODEL, *QUICK, *choice)[part], reference[part])
+
+    def test_paper_method(self):
+        # The plain fixed point from Phi's first column, step 2 us: at rest after 6 iterations.
+        energy = self.json_of("--model", "1.037,4073,0.3182", "--method", "paper", "--trend", "none")["energy"]
+        self.assertAlmostEqual(energy["E"], 0.00448654991209, delta=1e-12)
+        times = [0.000342, 0.000470, 0.000574, 0.001540]
+        self.assertEqual(len(energy["switch_times"]), len(times))
+        for got, expected in zip(energy["switch_times"], times):
+            self.assertAlmostEqual(got, expected, delta=1e-12)
+
+    def test_same_seed_same_bytes_in_any_locale(self):
+        first = self.succeed("report", *MODEL, *QUICK)
+        for name in ["C", "de_DE.UTF-8", "C.UTF-8"]:
+            self.assertEqual(self.succeed("report", *MODEL, *QUICK, env=os.environ | {"LC_ALL": name}), first)
+
+
+class BadOptions(ProgramTest):
+    def test_commands(self):
+        self.refuse([], "emax: ", "expected emax report")
+        self.refuse(["reprot"], "emax: reprot: ", "did you mean emax report?")
+        self.refuse(["--json"], "emax: --json: ", "emax report")
+        for command in ["certify", "compare", "scpi"]:
+            self.refuse([command, "a"], f"emax: {command}: not yet", "use emax report")
+
+    def test_later_work(self):
+        self.refuse_option("--distribution", "normal", "not there yet", "box")
+
+    def test_unknown_options(self):
+        meant = {"--tirals": "trials", "--iter": "iterations", "--outdir": "out", "--probabilty": "probability"}
+        for wrong, right in meant.items():
+            self.refuse(["report", *MODEL, wrong, "1"], f"emax: {wrong}: ", f"did you mean --{right}?")
+        self.refuse(["report", *MODEL, "--" + "x" * 100_000], "emax: --xxx", "unknown option")
+        self.refuse(["report", "points.csv"], "emax: points.csv: ", "--points FILE")
+        self.refuse(["report", "-x"], "emax: -x: ")
+        self.refuse(["report", "--"], "emax: --: ")
+        self.refuse(["report", ""], "emax: ", "unexpected")
+
+    def test_forms(self):
+        self.refuse_option("--time", None, "no value", "expected")
+        self.refuse(["report", *MODEL, "--time"], "emax: --time: no value")
+        self.refuse(["report", *MODEL, "--out="], "emax: --out: no value")
+        self.refuse(["report", *MODEL, "--out", ""], "emax: --out: no value")
+        self.refuse(["report", *MODEL, "--json=1"], "emax: --json: takes no value")
+        self.refuse(["report", *MODEL, "--json", "--json"], "emax: --json: given twice")
+        self.refuse(["report", *MODEL, "--time", "1", "--time=1"], "emax: --time: given twice")
+        self.refuse(["report", *MODEL, "--points", "x"], "emax: --model: excludes --points")
+        self.refuse_option("--reference-uncertainty", "1", "excluded by --model", "expected with points")
+
+    def test_not_numbers(self):
+        for option in ["--order", "--cutoff", "--gain", "--time", "--limit", "--step", "--iterations", "--trials",
+                       "--probability", "--seed", "--trend", "--reference-uncertainty"]:  # fmt: skip
+            for value in ["abc", "nan", "inf", "1e999", "1x", "1 2", "0x10", "1,", ","]:
+                with self.subTest(option=option, value=value):
+                    self.refuse_option(option, value, f'"{value}" given', "expected")
+
+    def test_choices(self):
+        wrong = {"--criterion": "ISE", "--method": "good", "--generator": "2007", "--distribution": "x"}
+        for option, value in wrong.items():
+            self.refuse_option(option, value, f'"{value}" given', "expected")
+
+    def test_ranges(self):
+        values = {
+            "--order": ["0", "16", "-1", "1.5", "1e10"],
+            "--cutoff": ["0", "-1", "1e10"],
+            "--gain": ["-1"],
+            "--time": ["0", "-1", "-0", "1e4"],
+            "--limit": ["0", "-1"],
+            "--iterations": ["0", "-1", "1.5", "1e10"],
+            "--trials": ["0", "999", "-1", "1000.5", "1000000001", "1e20"],
+            "--probability": ["0", "1", "-1", "2"],
+            "--seed": ["0,1,1,1", "1,2", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "2147483579,1,1,1", "1.5,2,3,4"],
+            "--trend": ["0.001", "0,1", "-1,1", "0.002,0.001", "0.001,0.001", ",".join(map(str, range(1, 18)))],
+        }
+        for option, wrong in values.items():
+            for value in wrong:
+                with self.subTest(option=option, value=value):
+                    self.refuse_option(option, value, f'"{value}" given', "expected")
+        self.refuse_option("--step", "0", "expected", device=[*MODEL, "--method", "paper"])
+
+    def test_bench(self):
+        values = {
+            "--bench-seed": ["-1", "1.5", "4294967296", "x"],
+            "--bench-truth": ["1,2", "1,2,0.3,4", "0,4073,0.3", "1,0,0.3", "1,4073,0", "1,4073,1", "x", "nan,1,0.3"],
+            "--bench-noise": ["-1", "nan", "2"],
+            "--bench-fault": ["x", "@1", "dc-drift@", "dc-drift@-1", "dc-drift@x", "dc-drift@nan", "DC-DRIFT"],
+            "--level": ["0", "-1", "nan", "21"],
+            "--acceleration-limit": ["0", "0.5", "x"],
+            "--drive-limit": ["0", "-1", "11"],
+            "--slew": ["0", "100", "x"],
+            "--settle": ["-1", "11"],
+            "--cycles": ["0", "1001", "1.5"],
+            "--reference-uncertainty": ["-1", "51", "nan"],
+        }
+        for option, wrong in values.items():
+            for value in wrong:
+                with self.subTest(option=option, value=value):
+                    said = "emax: --acceleration-limit" if value == "21" else f'emax: {option}: "{value}" given'
+                    self.refuse(["report", option, value, "--out", "out"], said, "expected")
+        self.refuse(["report", "--level", "30"], "--acceleration-limit: 20 by default", "at least the level")
+        self.refuse(["report", "--time", "10", "--out", "out"], "emax: --time: ", "8192 cells")
+
+    def test_bench_options_exclude_other_devices(self):
+        options = {"seed": 1, "truth": "1,4000,0.3", "noise": 0, "fault": "none"}
+        given = [(f"--bench-{name}", value) for name, value in options.items()]
+        given += [("--level", 1), ("--acceleration-limit", 20), ("--drive-limit", 5), ("--slew", 1e5)]
+        given += [("--settle", 0.01), ("--cycles", 3)]
+        for option, value in given:
+            self.refuse(["report", *MODEL, option, value], f"emax: {option}: excluded by --model", "expected")
+            self.refuse(["report", "--points", "x", option, value], f"emax: {option}: excluded by --points")
+
+    def test_what_the_memory_does_not_hold(self):
+        self.refuse_option("--time", "10", "8192 cells")
+        self.refuse_option("--trend", "0.001,10", "8192 cells")
+        self.refuse_option("--time", "0.1", "8192 cells", device=[*MODEL, "--method", "paper"])
+
+    def test_more_signs_than_the_table_holds(self):
+        device = ["--model", "1,10000,0.01", "--method", "paper", "--step", "1e-5", "--trend", "none"]
+        self.refuse_option("--time", "0.05", "256", "shorten", device=device)
+
+
+class Bench(ProgramTest):
+    def measure(self, *options):
+        return self.json_of(*QUICK, *options)
+
+    def assert_within(self, model, truth):
+        # The interval of S covers what its own bench has drawn for the reference and the gains.
+        for name in ["S", "f0", "beta"]:
+            self.assertLessEqual(abs(model[name] - truth[name]), 1.96 * model["u" + name], name)
+
+    def test_default_job_recovers_the_truth(self):
+        results = json.loads(self.succeed("report", "--json"))
+        self.assertEqual(results["model"]["source"], "bench")
+        self.assert_within(results["model"], TRUTH)
+        self.assertEqual(results["model"]["dof"], 81)
+        self.assertLess(results["model"]["chi2"], 81 * 1.401)  # One in a hundred is beyond.
+        bench = results["bench"]
+        self.assertEqual((bench["points"], bench["seed"], bench["truth"]), (42, 1, TRUTH))
+        # The bench cannot know S better than its reference: 0.25 %, 0.05 % and 0.1 % are common to all points.
+        self.assertGreater(results["model"]["uS"] / results["model"]["S"], math.hypot(0.0025, 0.0005, 0.001) * 0.999)
+        self.assertGreater(results["monte_carlo"]["E_max"], results["energy"]["E"])
+        self.assertEqual(len(results["trend"]["points"]), 5)
+
+    def test_another_truth(self):
+        results = self.measure("--bench-truth", "0.2,2500,0.5", "--bench-seed", "3", "--bench-noise", "0.001")
+        # Five standard uncertainties: this is not about the width of the interval.
+        for name, value in {"S": 0.2, "f0": 2500, "beta": 0.5}.items():
+            self.assertLessEqual(abs(results["model"][name] - value), 5 * results["model"]["u" + name], name)
+
+    def test_same_seed_same_bytes(self):
+        first = self.succeed("report", *QUICK)
+        self.assertEqual(self.succeed("report", *QUICK), first)
+        self.assertEqual(self.succeed("report", *QUICK, "--bench-seed", "1"), first)
+        self.assertNotEqual(self.measure("--bench-seed", "2")["model"]["S"], self.measure()["model"]["S"])
+
+    def test_defaults_are_what_the_help_says(self):
+        defaults = {"bench-seed": "1", "bench-truth": "1.037,4073,0.3182", "bench-noise": "0.005"}
+        defaults |= {"bench-fault": "none", "level": "1", "acceleration-limit": "20", "drive-limit": "5"}
+        defaults |= {"slew": "100000", "settle": "0.01", "cycles": "3"}
+        report = self.succeed("report", *QUICK)
+        given = [part for name, value in defaults.items() for part in (f"--{name}", value)]
+        given += ["--reference-uncertainty", "0.5"]
+        self.assertEqual(self.succeed("report", *QUICK, *given), report)
+        text = self.succeed("report", "--help")
+        for name, value in defaults.items():
+            self.assertRegex(text, rf"(?s)--{name} .*?\(default {re.escape(value)}\)")
+
+    def test_settings_arrive(self):
+        results = self.measure("--level", "2", "--acceleration-limit", "30", "--drive-limit", "6", "--slew", "2e5",
+                               "--reference-uncertainty", "1", "--settle", "0.02", "--cycles", "5")  # fmt: skip
+        names = ["level", "acceleration_limit", "drive_limit", "slew", "reference_percent"]
+        self.assertEqual([results["bench"][name] for name in names], [2, 30, 6, 2e5, 1])
+        self.assertGreater(results["bench"]["common_percent"], math.hypot(1, 0.1, 0.2) * 0.999)
+
+    def test_files_and_the_way_back(self):
+        report = self.succeed("report", *QUICK, "--out", "out")
+        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in ["frequency_response.csv", *FILES])])
+        self.assertEqual((self.directory / "out/report.txt").read_text(), report)
+        results = json.loads((self.directory / "out/results.json").read_text())
+        common = ["--reference-uncertainty", repr(results["bench"]["common_percent"])]
+        again = self.json_of("--points", "out/frequency_response.csv", *common, *QUICK)
+        for name in ["S", "f0", "beta", "uS", "uf0", "ubeta", "chi2"]:
+            # 15 digits of the totals leave 12 of a part that is a thirtieth of them.
+            self.assertAlmostEqual(again["model"][name] / results["model"][name], 1, delta=1e-9)
+        self.assertIsNone(again["bench"])
+
+    def test_faults(self):
+        for fault, (name, advice) in FAULTS.items():
+            with self.subTest(fault):
+                result = self.run_program("report", *QUICK, "--bench-fault", f"{fault}@4", "--out", "out")
+                self.assertEqual(result.returncode, 3)
+                line = self.assert_one_line(result.stderr, name, advice, " of 42 points kept, drive at zero)")
+                found = re.search(rf"\Aemax: {name} at ([0-9]+) Hz: .* \(([0-9]+) of 42", line)
+                kept = int(found[2])
+                self.assertTrue(0 < kept < 42)
+                report = result.stdout.decode("ascii")
+                self.assertRegex(report, rf"FAULT\n  {name} +at {found[1]} Hz\n")
+                self.assertEqual((self.directory / "out/report.txt").read_text(), report)
+                files = ["frequency_response.csv", "report.txt", "results.json"]
+                self.assertEqual(self.files(), ["out", *(f"out/{file}" for file in files)])
+                bench = json.loads((self.directory / "out/results.json").read_text())["bench"]
+                self.assertEqual((bench["fault"]["name"], bench["points"]), (name, kept))
+                rows = (self.directory / "out/frequency_response.csv").read_text().splitlines()
+                self.assertEqual((rows[0], len(rows)), (HEADER, 1 + kept))
+                self.assertLess(float(rows[-1].split(",")[0]), float(found[1]))
+
+    def test_fault_before_the_first_point(self):
+        result = self.run_program("report", "--bench-fault", "dc-drift@0", "--json", "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "DC drift before the first frequency", "0 of 42 points kept")
+        results = json.loads(result.stdout)
+        self.assertEqual((results["model"], results["energy"], results["bench"]["points"]), (None, None, 0))
+        self.assertEqual((self.directory / "out/frequency_response.csv").read_text(), HEADER + "\n")
+
+    def test_fault_replaces_files_of_an_earlier_run(self):
+        self.succeed("report", *QUICK, "--out", "out")
+        (self.directory / "out/notes.txt").write_text("mine")
+        self.assertEqual(self.run_program("report", "--bench-fault", "late-block", "--out", "out").returncode, 3)
+        files = ["frequency_response.csv", "notes.txt", "report.txt", "results.json"]
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), files)
+
+    def test_levels_that_cannot_be_reached(self):
+        result = self.run_program("report", "--level", "19")
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "level not reached at 160 Hz", "lower the level or raise the drive limit")
+
+    def test_fault_after_the_end_is_none(self):
+        expected = self.succeed("report", *QUICK)
+        self.assertEqual(self.succeed("report", *QUICK, "--bench-fault", "dc-drift@1000"), expected)
+
+
+class ReferenceUncertainty(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.table = ["--points", DATA / "djb_a1800v.csv"]
+
+    def test_paper_table(self):
+        model = self.json_of(*self.table, "--reference-uncertainty", "0.5", *QUICK)["model"]
+        # Weighted least squares with the full covariance matrix, by NumPy; to half a unit of the last digit given.
+        self.assertAlmostEqual(model["S"], 1.00645, delta=5e-6)
+        self.assertAlmostEqual(model["uS"], 0.00270, delta=5e-6)
+        self.assertAlmostEqual(model["chi2"], 8911.7, delta=0.05)
+        self.assertAlmostEqual(model["common_percent"], 0.5, delta=1e-12)
+
+    def test_zero_changes_nothing(self):
+        expected = self.succeed("report", *self.table, *QUICK)
+        self.assertEqual(self.succeed("report", *self.table, *QUICK, "--reference-uncertainty", "0"), expected)
+
+    def test_totals_below_it(self):
+        # The table's first point has U/A = 0.01/1.03.
+        self.refuse(["report", *self.table, "--reference-uncertainty", "1", "--out", "out"], "djb_a1800v.csv:2: ",
+                    "at 30 Hz is 0.9709 %", "expected totals (k = 2)", "--reference-uncertainty")  # fmt: skip
+        lines = ["# a", *table(second_order(), [100.0, 200.0, 300.0])]
+        lines[3] = "200.0,1.0,-1,0.004,1.0"
+        arguments = ["report", "--points", self.write(lines), "--reference-uncertainty", "0.4"]
+        self.refuse(arguments, "points.csv:4: ", "200 Hz")
+
+
+class BadModel(ProgramTest):
+    def refuse_model(self, model, *words):
+        return self.refuse(["report", "--model", model, "--out", "out"], "emax: --model: ", *words)
+
+    def test_forms(self):
+        counts = ["1", "1,2", "1,2,0.3,4", "1,2,0.3,4,5", "1,2,0.3,4,5,6,7"]
+        for model in [*counts, "a,b,c", "1,,0.3", "1;2;0.3", "nan,1,0.3"]:
+            with self.subTest(model):
+                self.refuse_model(model, "expected three or six numbers")
+
+    def test_damping(self):
+        for damping in ["1", "1.2", "1e9"]:
+            self.refuse_model(f"1,4000,{damping}", "beta is 1 or more", "expected 0.0001 to below 1", "resonance")
+        for damping in ["0", "-0.1", "1e-5"]:
+            self.refuse_model(f"1,4000,{damping}", "beta", "expected 0.0001 to below 1")
+
+    def test_sensitivity(self):
+        self.refuse_model("-1,4000,0.3", "polarity", "magnitude", "expected S above 0")
+        self.refuse_model("0,4000,0.3", "S is zero", "expected")
+        self.refuse_model("1e200,4000,0.3", "sensitivity", "1e30")
+
+    def test_frequency(self):
+        for frequency in ["0", "-4000", "1e-4", "1e10"]:
+            self.refuse_model(f"1,{frequency},0.3", "f0 is out of range", "expected 0.001 to 1e9 Hz")
+
+    def test_uncertainties(self):
+        for u in ["-1,0,0", "0,-1,0", "0,0,-0.1"]:
+            self.refuse_model(f"1,4000,0.3,{u}", "negative", "expected 0 or more")
+        self.refuse_model("1,4000,0.3,1,0,0", "u(S) is too large", "expected")
+        self.refuse_model("1,4000,0.3,0,4000,0", "u(f0) is too large", "expected")
+        self.refuse_model("1,4000,0.3,0,0,0.3", "u(beta) is too large", "expected")
+        self.refuse_model("1,4000,0.8,0,0,0.2", "u(beta) is too large", "expected")
+
+
+class Files(ProgramTest):
+    def columns(self, name):
+        with open(self.directory / "out" / name, newline="", encoding="ascii") as file:
+            rows = list(csv.reader(file))
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows), name)
+        for row in rows[1:]:
+            self.assertTrue(all(math.isfinite(float(cell)) for cell in row), (name, row))
+        return ",".join(rows[0]), rows[1:]
+
+    def test_model(self):
+        report = self.succeed("report", *MODEL, "--trials", "1000", "--trend", "0.001,0.002", "--out", "out")
+        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in FILES)])
+        self.assertEqual((self.directory / "out/report.txt").read_text(), report)
+        results = self.json_of(*MODEL, "--trials", "1000", "--trend", "0.001,0.002")
+        self.assertEqual(json.loads((self.directory / "out/results.json").read_text()), results)
+
+        header, rows = self.columns("impulse_response.csv")
+        self.assertEqual(header, "t_s,k,ka,kf")
+        self.assertAlmostEqual(max(float(row[1]) for row in rows), 17462.4, delta=20)  # At the next sample.
+        header, rows = self.columns("signal.csv")
+        self.assertEqual(header, "t_s,x_mps2,y_v")
+        self.assertLessEqual({abs(float(row[1])) for row in rows}, {0.0, 1.037})
+        header, rows = self.columns("trend.csv")
+        self.assertEqual(header, "T_s,E,fit")
+        self.assertEqual([float(row[0]) for row in rows], [0.001, 0.002])
+        header, rows = self.columns("histogram.csv")
+        self.assertEqual(header, "E_low,E_high,count")
+        self.assertEqual(sum(int(row[2]) for row in rows), 1000)
+
+    def test_points(self):
+        name = self.write(table(second_order()))
+        self.succeed("report", "--points", name, *QUICK, "--json", "--out", "out")
+        files = ["frequency_response.csv", *FILES]
+        self.assertEqual(self.files(), ["out", *(f"out/{file}" for file in files), name])
+        header, rows = self.columns("frequency_response.csv")
+        self.assertEqual(
+            header,
+            "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,residual_re,residual_im",
+        )
+        self.assertEqual([float(row[0]) for row in rows], FREQUENCIES)
+
+    def test_files_of_an_earlier_run_are_replaced(self):
+        self.succeed("report", "--points", self.write(table(second_order())), *QUICK, "--out", "out")
+        (self.directory / "out/notes.txt").write_text("mine")
+        report = self.succeed("report", *MODEL, *QUICK, "--out", "out")
+        self.assertEqual((self.directory / "out/report.txt").read_text(), report)
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), sorted([*FILES, "notes.txt"]))
+
+    def test_directories_that_cannot_be_written(self):
+        self.write(["x"], "file")
+        (self.directory / "taken").mkdir()
+        (self.directory / "taken/signal.csv").mkdir()
+        for directory in ["file", "file/out", "missing/out", "/proc/emax", "o" * 300]:
+            with self.subTest(directory):
+                arguments = ["report", *MODEL, *QUICK, "--out", directory]
+                self.refuse(arguments, f"emax: --out: {directory[:200]}", "expected a directory")
+        arguments = ["report", *MODEL, *QUICK, "--out", "taken"]
+        self.refuse(arguments, "emax: --out: taken/signal.csv", "expected a directory")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_directory_without_permission(self):
+        (self.directory / "locked").mkdir(mode=0o555)
+        self.refuse(["report", *MODEL, *QUICK, "--out", "locked"], "emax: --out: locked: ", "expected")
+
+    def test_full_disk(self):
+        def limit_file_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
+
+        for start in [None, "out"]:
+            if start:
+                (self.directory / start).mkdir()
+            arguments = ["report", *MODEL, *QUICK, "--out", "out"]
+            self.refuse(arguments, "emax: out/", "too large", status=3, preexec_fn=limit_file_size)
+
+    def test_nothing_is_written_for_bad_points(self):
+        self.refuse(["report", "--points", self.write(["1,2,3"]), "--out", "out"], "points.csv:1: ")
+
+
+class Endings(ProgramTest):
+    LONG = ["report", *MODEL, "--trials", "100000000", "--out", "out"]
+
+    def wait_for(self, condition):
+        deadline = time.monotonic() + 30
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
+    def test_stop_requests(self):
+        for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]:
+            with self.subTest(number):
+                process = self.start_program(*self.LONG)
+                self.wait_for((self.directory / "out").exists)  # The long work comes after it.
+                time.sleep(0.3)
+                process.send_signal(number)
+                output, error = process.communicate(timeout=20)
+                self.assertEqual((process.returncode, output, error), (130, b"", b"emax: stopped\n"))
+                self.assertEqual(self.files(), [])
+
+    LONG_SWEEP = ["report", "--cycles", "1000", "--settle", "10", "--out", "out"]
+
+    def test_stop_of_the_sweep(self):
+        process = self.start_program(*self.LONG_SWEEP)
+        self.wait_for((self.directory / "out").exists)  # The sweep comes after it.
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        output, error = process.communicate(timeout=20)
+        self.assertEqual((process.returncode, output), (130, b""))
+        self.assertEqual(error, b"emax: stopped during the sweep, drive at zero\n")
+        self.assertEqual(self.files(), [])
+
+    def test_progress_of_the_sweep(self):
+        shown = self.shown_until(self.LONG_SWEEP, b"Hz, ")
+        self.assertRegex(shown, r"\A\remax: sweep, (check at )?\d+ Hz, \d+ %, \d+ s *\r")
+        self.assertRegex(shown, r"\r +\remax: stopped during the sweep, drive at zero\r\n\Z")
+        self.assertLess(max(map(len, re.split(r"[\r\n]", shown))), 80)
+
+    def test_stop_keeps_files_of_an_earlier_run(self):
+        report = self.succeed("report", *MODEL, *QUICK, "--out", "out")
+        process = self.start_program(*self.LONG)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+        self.assertEqual((self.directory / "out/report.txt").read_text(), report)
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), FILES)
+
+    def test_stop_while_waiting_for_input(self):
+        process = self.start_program("report", "--points", "-", stdin=subprocess.PIPE)
+        process.stdin.write(b"# more than a pipe holds: it is being read when this returns\n" * 5000)
+        process.stdin.flush()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 130)
+        self.assertEqual(process.stderr.read(), b"emax: stopped\n")
+        process.communicate()
+
+    def shown_until(self, arguments, words):
+        """What the program shows on a terminal; it is stopped once these words are there."""
+        ours, theirs = pty.openpty()
+        process = self.start_program(*arguments, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        try:
+            while piece := os.read(ours, 4096):
+                shown += piece
+                if words in shown:
+                    process.send_signal(signal.SIGINT)
+        except OSError:  # The other side has been closed.
+            pass
+        os.close(ours)
+        process.communicate(timeout=20)
+        return shown.decode("ascii")
+
+    def test_progress_on_a_terminal(self):
+        shown = self.shown_until(self.LONG, b"Monte Carlo")
+        self.assertRegex(shown, r"\A\remax: Monte Carlo \d+ %, \d+ s *\r")
+        self.assertRegex(shown, r"\r +\remax: stopped\r\n\Z")
+        self.assertLess(max(map(len, re.split(r"[\r\n]", shown))), 80)
+
+    def test_no_progress_for_short_work(self):
+        ours, theirs = pty.openpty()
+        result = self.run_program("report", "--model", "1.037,4073,0.3182", "--trend", "none", stderr=theirs)
+        os.close(theirs)
+        self.assertEqual(result.returncode, 0)
+        with self.assertRaises(OSError):  # Nothing there to be read.
+            os.read(ours, 1)
+        os.close(ours)
+
+    def test_output_that_cannot_be_written(self):
+        with open("/dev/full", "wb") as full:
+            report = ["report", *MODEL, *QUICK]
+            for arguments in [report, [*report, "--json"], ["--help"], ["--version"]]:
+                self.refuse(arguments, "emax: standard output: No space left", status=3, stdout=full)
+
+    def test_reader_that_goes_away(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        for options in [{}, {"restore_signals": False}]:
+            result = self.run_program("report", *MODEL, *QUICK, stdout=writer, **options)
+            self.assertEqual(result.stderr, b"")
+            self.assertIn(result.returncode, [-signal.SIGPIPE, 3])
+        os.close(writer)
+
+    def test_help_and_version(self):
+        self.assertEqual(self.succeed("--version"), "emax 0.1.0\n")
+        self.assertEqual(self.succeed("report", "--version"), "emax 0.1.0\n")
+        short, long = self.succeed("--help"), self.succeed("report", "--help")
+        self.assertEqual(self.succeed("report", "--model", "--help"), long)
+        for text in [short, long]:
+            self.assertLessEqual(max(map(len, text.splitlines())), 80)
+            self.assertIn("Exit status", text)
+        names = "points model reference-uncertainty order cutoff gain time limit criterion method step iterations"
+        names += " bench-seed bench-truth bench-noise bench-fault"
+        names += " level acceleration-limit drive-limit slew settle cycles"
+        names += " trials adaptive probability distribution seed generator trend json out help version"
+        for name in names.split():
+            self.assertIn(f"  --{name} ", long)
+
+
+if __name__ == "__main__":
+    PROGRAM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
