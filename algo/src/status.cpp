@@ -88,6 +88,9 @@ const char* explain(Status status) noexcept {
     case Status::kDcDrift:
       return "The offset of a channel wanders; let the sensor and its conditioner warm up and check "
              "its cable and supply.";
+    case Status::kNotProven:
+      return "No upper bound passed its check for this device and time; shorten T, or use the "
+             "energy found without a bound.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";
 }

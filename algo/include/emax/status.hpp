@@ -42,6 +42,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kDistorted,         ///< The response is not a sine at the drive's frequency.
     kStopped,           ///< Ended on request.
     kDcDrift,           ///< The offset of a channel does not stay where it was.
+    kNotProven,         ///< No bound passed its check.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.
