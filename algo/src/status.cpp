@@ -86,7 +86,8 @@ const char* explain(Status status) noexcept {
     case Status::kStopped:
       return "The measurement was stopped on request; start it again when ready.";
     case Status::kDcDrift:
-      return "The offset of a channel wanders; let the sensor and its conditioner warm up and check "
+      return "The offset of a channel wanders; let the sensor and its conditioner warm up and "
+             "check "
              "its cable and supply.";
     case Status::kNotProven:
       return "No upper bound passed its check for this device and time; shorten T, or use the "

@@ -96,35 +96,35 @@ ChannelNoise pooled_noise(Span<const PointScatter> scatter, Span<const double> f
   return noise;
 }
 
-PointVerdict point_verdict(const PointScatter& p, double frequency_hz, const ChannelNoise& noise,
-                           const BudgetInputs& inputs) noexcept {
+PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
+                           const ChannelNoise& noise, const BudgetInputs& inputs) noexcept {
   PointVerdict verdict;
   PointBudget& budget = verdict.budget;
-  const double samples = p.repeat_samples * static_cast<double>(p.repeats);
-  const double pooled = ratio_variance(p, noise.reference_v, noise.device_v, samples);
-  const double dof = 2.0 * static_cast<double>(p.repeats - 1);
-  const double own = p.ratio_sum / dof / static_cast<double>(p.repeats);
-  const double hum_in_repeats = relative_hum(p, frequency_hz, p.repeat_samples, inputs);
+  const double samples = scatter.repeat_samples * static_cast<double>(scatter.repeats);
+  const double pooled = ratio_variance(scatter, noise.reference_v, noise.device_v, samples);
+  const double dof = 2.0 * static_cast<double>(scatter.repeats - 1);
+  const double own = scatter.ratio_sum / dof / static_cast<double>(scatter.repeats);
+  const double hum_in_repeats = relative_hum(scatter, frequency_hz, scatter.repeat_samples, inputs);
   const double explained =
-      pooled + hum_in_repeats * hum_in_repeats / static_cast<double>(p.repeats);
+      pooled + hum_in_repeats * hum_in_repeats / static_cast<double>(scatter.repeats);
   verdict.scatters = own > explained * chi_square_limit(dof);
   budget.noise = sqrt(verdict.scatters ? own : pooled);
-  budget.quantisation = sqrt(ratio_variance(p, inputs.reference_step_v / kSqrt12,
+  budget.quantisation = sqrt(ratio_variance(scatter, inputs.reference_step_v / kSqrt12,
                                             inputs.device_step_v / kSqrt12, samples));
-  budget.hum = relative_hum(p, frequency_hz, samples, inputs);
-  const double reference_v = sqrt(norm(p.reference));
-  const double device_v = sqrt(norm(p.device));
+  budget.hum = relative_hum(scatter, frequency_hz, samples, inputs);
+  const double reference_v = sqrt(norm(scatter.reference));
+  const double device_v = sqrt(norm(scatter.device));
   const double distortion =
-      length(distortion_of(p.reference_rest_v, noise.reference_v, reference_v, samples),
-             distortion_of(p.device_rest_v, noise.device_v, device_v, samples));
+      length(distortion_of(scatter.reference_rest_v, noise.reference_v, reference_v, samples),
+             distortion_of(scatter.device_rest_v, noise.device_v, device_v, samples));
   // Harmonics only get into a fit of whole periods through the half frame at most by which a
   // repeat misses them.
-  budget.distortion = distortion * 0.5 / p.repeat_samples / kSqrt3;
+  budget.distortion = distortion * 0.5 / scatter.repeat_samples / kSqrt3;
   verdict.relative_u =
       length(length(larger(budget.noise, budget.quantisation), budget.hum), budget.distortion);
   budget.phase_rad = verdict.relative_u;
   verdict.residual_percent =
-      100.0 * larger(p.reference_rest_v / reference_v, p.device_rest_v / device_v);
+      100.0 * larger(scatter.reference_rest_v / reference_v, scatter.device_rest_v / device_v);
   return verdict;
 }
 
@@ -139,9 +139,9 @@ CommonBudget common_budget(const SweepSettings& settings, double check_change) n
   return common;
 }
 
-double expected_scatter(const PointScatter& p, const BudgetInputs& inputs) noexcept {
-  return sqrt(ratio_variance(p, inputs.silent_reference.noise_v, inputs.silent_device.noise_v,
-                             p.repeat_samples));
+double expected_scatter(const PointScatter& scatter, const BudgetInputs& inputs) noexcept {
+  return sqrt(ratio_variance(scatter, inputs.silent_reference.noise_v, inputs.silent_device.noise_v,
+                             scatter.repeat_samples));
 }
 
 double distortion_of(double rest_v, double noise_v, double amplitude_v, double samples) noexcept {

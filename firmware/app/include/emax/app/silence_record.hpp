@@ -52,7 +52,7 @@ class SilenceRecord {
   };
 
   void add(Channel& channel, Span<const double> samples_v) const noexcept;
-  SilentChannel evaluate(const Channel& channel) const noexcept;
+  SilentChannel evaluate(const Channel& record) const noexcept;
 
   Channel reference_;
   Channel device_;
