@@ -41,10 +41,36 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
       diagonal_limit_ = endless_diagonal_;
     }
   }
-  if (model.criterion() == Criterion::kIntegralSquareError) {
+  const bool square = model.criterion() == Criterion::kIntegralSquareError;
+  if (square) {
     diagonal_limit_ = endless_diagonal_;
   }
+  fill_pulses(square ? count_ : 1);
   return Status::kOk;
+}
+
+/// Of a pulse of w cells: w times the diagonal of Phi's Toeplitz part and twice (w - d) times the
+/// element at each distance d. The limit counts the first modes only.
+void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
+  Complex term[kMaxModes];
+  for (std::size_t m = 0; m < count_; ++m) {
+    term[m] = correlation_[m];
+  }
+  double rise = endless_diagonal_;
+  double rise_of_limit = diagonal_limit_;
+  double energy = 0.0;
+  double limit = 0.0;
+  for (std::size_t width = 1; width <= kMaxPulse; ++width) {
+    energy += rise;
+    limit += rise_of_limit;
+    endless_pulse_[width - 1] = energy;
+    pulse_limit_[width - 1] = limit;
+    for (std::size_t m = 0; m < count_; ++m) {
+      rise += 2.0 * term[m].re;
+      rise_of_limit += m < modes_of_limit ? 2.0 * term[m].re : 0.0;
+      term[m] = step_[m] * term[m];
+    }
+  }
 }
 
 Complex PhiOperator::held_after_end(std::size_t mode, const Complex* state) const noexcept {
@@ -55,14 +81,17 @@ Complex PhiOperator::held_after_end(std::size_t mode, const Complex* state) cons
   return 0.5 * sum;
 }
 
-void PhiOperator::multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept {
+// All modes at each cell: their recursions are independent, so a processor runs them side by side.
+template <typename Value>
+void PhiOperator::apply(Span<const Value> signal, Span<double> product) const noexcept {
   Complex state[kMaxModes];
   for (std::size_t i = 0; i < cells_; ++i) {
-    double sum = endless_diagonal_ * signs[i];
+    const double value = signal[i];
+    double sum = endless_diagonal_ * value;
     for (std::size_t m = 0; m < count_; ++m) {
       sum += real_of_product(correlation_[m], state[m]);
       state[m] = step_[m] * state[m];
-      state[m].re += signs[i];
+      state[m].re += value;
     }
     product[i] = sum;
   }
@@ -77,13 +106,22 @@ void PhiOperator::multiply(Span<const std::int8_t> signs, Span<double> product) 
     back[m] = end_[m] * held_after_end(m, at_end);
   }
   for (std::size_t i = cells_; i-- > 0;) {
+    const double value = signal[i];
     double sum = product[i];
     for (std::size_t m = 0; m < count_; ++m) {
       sum += back[m].re;
-      back[m] = step_[m] * back[m] + static_cast<double>(signs[i]) * correlation_[m];
+      back[m] = step_[m] * back[m] + value * correlation_[m];
     }
     product[i] = sum;
   }
+}
+
+void PhiOperator::multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept {
+  apply(signs, product);
+}
+
+void PhiOperator::multiply(Span<const double> signal, Span<double> product) const noexcept {
+  apply(signal, product);
 }
 
 void PhiOperator::add_column(std::size_t cell, double scale, Span<double> product) const noexcept {
@@ -120,17 +158,22 @@ void PhiOperator::add_column(std::size_t cell, double scale, Span<double> produc
   }
 }
 
-double PhiOperator::diagonal(std::size_t cell) const noexcept {
-  const double cells_after = static_cast<double>(cells_ - 1 - cell);
+double PhiOperator::pulse(std::size_t cell, std::size_t width) const noexcept {
+  const double cells_after = static_cast<double>(cells_ - width - cell);
   Complex at_end[kMaxModes];
   for (std::size_t m = 0; m < count_; ++m) {
-    at_end[m] = end_[m] * exp(cells_after * pole_h_[m]);
+    Complex sum{1.0, 0.0};
+    for (std::size_t i = 1; i < width; ++i) {
+      sum = step_[m] * sum;
+      sum.re += 1.0;
+    }
+    at_end[m] = end_[m] * sum * exp(cells_after * pole_h_[m]);
   }
-  double sum = endless_diagonal_;
+  double energy = endless_pulse_[width - 1];
   for (std::size_t m = 0; m < count_; ++m) {
-    sum += real_of_product(at_end[m], held_after_end(m, at_end));
+    energy += real_of_product(at_end[m], held_after_end(m, at_end));
   }
-  return sum;
+  return energy;
 }
 
 }  // namespace emax

@@ -1,5 +1,8 @@
 // The search against enumeration, best known values and an independent flip search.
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <vector>
@@ -167,6 +170,49 @@ TEST(EnergySearch, OnTheSmallestGridItFindsTheEnumeratedMaximum) {
   // most.
   EXPECT_GE(search.result().energy, best * (1.0 - 1e-11));
   EXPECT_LE(search.result().energy, best * 1.01);
+}
+
+TEST(TurnBestPulse, ClimbsUntilNoPulseGains) {
+  constexpr std::size_t kCells = 60;
+  std::mt19937_64 random(6);
+  for (const Criterion criterion : {kIse, kDifference}) {
+    ModalModel model{};
+    ASSERT_EQ(model.set(kPaperDevice, test::kPaperFilter, criterion), Status::kOk);
+    PhiOperator phi{};
+    ASSERT_EQ(phi.set(model, 1e-3, kCells), Status::kOk);
+    std::int8_t signs[kCells];
+    for (std::int8_t& sign : signs) {
+      sign = random() % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
+    }
+    const auto energy_of = [&](Span<const std::int8_t> pattern) {
+      SwitchingSignal signal{};
+      EXPECT_EQ(signal.set_signs(pattern, 1e-3), Status::kOk);
+      return energy(model, signal);
+    };
+    double product[kCells];
+    double reached = energy_of(signs);
+    const double tolerance = 10.0 * test::rounding_of(model);
+    for (;;) {
+      phi.multiply(Span<const std::int8_t>(signs), product);
+      if (!turn_best_pulse(phi, signs, product)) {
+        break;
+      }
+      const double next = energy_of(signs);
+      ASSERT_GT(next, reached - tolerance);
+      reached = next;
+    }
+    // Every stretch of equal signs up to the longest pulse, turned by hand.
+    for (std::size_t i = 0; i < kCells; ++i) {
+      std::int8_t turned[kCells];
+      std::copy(std::begin(signs), std::end(signs), turned);
+      for (std::size_t j = i; j < kCells && j < i + PhiOperator::kMaxPulse && signs[j] == signs[i];
+           ++j) {
+        turned[j] = static_cast<std::int8_t>(-turned[j]);
+        EXPECT_LE(energy_of(turned), reached + 1e-9 * std::fabs(reached) + tolerance)
+            << i << ' ' << j;
+      }
+    }
+  }
 }
 
 TEST(EnergySearch, PaperMethodIsTheFixedPointFromTheFirstColumn) {

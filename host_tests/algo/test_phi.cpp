@@ -125,6 +125,26 @@ TEST_P(PhiCase, NoElementOfTheDiagonalIsAboveTheLimit) {
   }
 }
 
+TEST_P(PhiCase, PulseIsASumOverTheMatrixAndNotAboveItsLimit) {
+  const double tolerance = 1e-14 * scale_ + test::rounding_of(model_) / kCells;
+  for (std::size_t width = 1; width <= PhiOperator::kMaxPulse; ++width) {
+    for (std::size_t first = 0; first + width <= kCells; ++first) {
+      double sum = 0.0;
+      double sizes = 0.0;
+      for (std::size_t i = first; i < first + width; ++i) {
+        for (std::size_t j = first; j < first + width; ++j) {
+          sum += buffer_.matrix().at(i, j);
+          sizes += std::fabs(buffer_.matrix().at(i, j));
+        }
+      }
+      const double pulse = operator_.pulse(first, width);
+      const double rounding = static_cast<double>(width * width) * tolerance;
+      EXPECT_NEAR(pulse, sum, rounding) << first << ' ' << width;
+      EXPECT_LE(pulse, operator_.pulse_limit(width) + 1e-13 * sizes + rounding);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Models, PhiCase,
     testing::Values(Case{1, 1.037, 0.3182, 2e-3, kIse}, Case{2, 0.5, 0.01, 2e-3, kIse},

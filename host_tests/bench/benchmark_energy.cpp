@@ -85,9 +85,9 @@ void iteration_stored_phi(benchmark::State& state) {
   const std::size_t cells = 98;
   (void)phi_buffer.fill(paper_model(), 2e-3, cells);
   const Span<std::int8_t> signs = workspace.signs(cells);
-  signs_of_column(phi_buffer.matrix(), 0, signs, workspace.product(cells, true));
+  signs_of_column(phi_buffer.matrix(), 0, signs, workspace.product(cells));
   for (auto _ : state) {
-    phi_buffer.matrix().multiply(signs, workspace.product(cells, true));
+    phi_buffer.matrix().multiply(signs, workspace.product(cells));
     benchmark::ClobberMemory();
   }
 }
@@ -98,9 +98,9 @@ void iteration_applied_phi(benchmark::State& state) {
   PhiOperator phi{};
   (void)phi.set(paper_model(), 2e-6 * static_cast<double>(cells), cells);
   const Span<std::int8_t> signs = workspace.signs(cells);
-  signs_of_column(phi, 0, signs, workspace.product(cells, false));
+  signs_of_column(phi, 0, signs, workspace.product(cells));
   for (auto _ : state) {
-    phi.multiply(signs, workspace.product(cells, false));
+    phi.multiply(signs, workspace.product(cells));
     benchmark::ClobberMemory();
   }
 }
@@ -124,7 +124,7 @@ void one_trial(benchmark::State& state, Method method) {
   settings.search.duration_s = duration_s(state);
   settings.search.step_s = 2e-6;
   settings.search.max_iterations = 30;
-  (void)trials.start(paper_model(), maximum(settings.search), settings);
+  (void)trials.start(paper_model(), maximum(settings.search), settings, workspace);
   std::uint32_t trial = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(trials.energy(trial++, workspace));

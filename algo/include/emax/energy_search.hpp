@@ -16,21 +16,19 @@
 
 namespace emax {
 
-/// The number of cells up to which Phi is stored; beyond, it is applied without storing it.
+/// The workspace has room for the packed triangle of Phi with this many cells.
 inline constexpr std::size_t kPhiCells = 128;
 
 /// Memory for signals: what every search and every trial needs while it runs, and nothing
-/// afterwards. 83 KiB. Phi of kPhiCells cells and a product of kMaxCells cells are never needed
-/// together and share their place.
+/// afterwards. 81 KiB. The product, a refinement and a bound are never needed together and share
+/// their place.
 class GridWorkspace {
  public:
-  Span<double> packed_phi() noexcept { return Span<double>(numbers_); }
-  /// Phi x for the stored Phi, which has at most kPhiCells cells, or for the operator.
-  Span<double> product(std::size_t cells, bool phi_is_stored) noexcept {
-    return phi_is_stored ? Span<double>(small_product_).first(cells)
-                         : Span<double>(numbers_).first(cells);
-  }
-  /// For a refinement, when neither Phi nor a product is needed any more.
+  /// For a bound, in place of a product.
+  Span<double> numbers() noexcept { return Span<double>(numbers_); }
+  /// Phi x, one number per cell.
+  Span<double> product(std::size_t cells) noexcept { return Span<double>(numbers_).first(cells); }
+  /// For a refinement, when the product is not needed any more.
   Span<double> refinement() noexcept { return Span<double>(numbers_).first(kRefinementScratch); }
   Span<std::int8_t> signs(std::size_t cells) noexcept {
     return Span<std::int8_t>(signs_).first(cells);
@@ -43,7 +41,6 @@ class GridWorkspace {
   static_assert(packed_size(kPhiCells) >= kMaxCells);
   static_assert(packed_size(kPhiCells) >= kRefinementScratch);
   double numbers_[packed_size(kPhiCells)] = {};
-  double small_product_[kPhiCells] = {};
   std::int8_t signs_[kMaxCells] = {};
   std::int8_t best_signs_[kMaxCells] = {};
 };
@@ -52,7 +49,7 @@ static_assert(std::is_trivially_copyable_v<GridWorkspace>);
 
 /// How the largest energy is looked for.
 enum class Method : std::uint8_t {
-  kBest,   ///< Many starts climb by the fixed point and by single cells; the best are refined.
+  kBest,   ///< Many starts climb by the fixed point and by pulses; the best are refined.
   kPaper,  ///< The paper's procedure to the letter: the fixed point from Phi's first column.
 };
 
@@ -79,30 +76,37 @@ struct MaximumEnergy {
 /// @returns kMaxCells + 1 if it takes more than kMaxCells.
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
 
-/// Searches in steps of one starting signal, so that nothing else has to wait for it.
+/// Searches in short steps, so that nothing else has to wait for it.
 ///
 ///     search.start(model, settings, workspace);
 ///     while (!search.done()) {
 ///       search.step(model, workspace);
 ///     }
 ///
-/// kBest tries, always in this order: the constant signal, 32 columns of Phi, periodic signals with
-/// 24 half-periods from that of the resonance up to T and 4 phases each, and 8 patterns of seeded
-/// random signs. From each, the fixed point runs until it rests and then single cells are turned,
-/// the most profitable one first, until no cell gains. The four best signals are then refined in
-/// continuous time, and the one with the largest energy wins; the first of them on ties, so the
-/// result is the same on every target. 11 KiB beside the workspace.
+/// kBest tries, always in this order: the constant signal, 4 columns of Phi, 4 periodic signals
+/// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs.
+/// (Random signs are the best starts: the first steps of the fixed point leave in them what the
+/// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
+/// gains most is turned (`turn_best_pulse()`) and the fixed point runs again, until no pulse gains.
+/// A pulse inside a run of equal signs is a new pair of switches, one that fills a run takes a pair
+/// away, and one at the end of a run moves a switch. A climb that ends within 1 % of the highest
+/// one so far is refined in continuous time. At last the best one goes back to the grid, which may
+/// have gains to offer again now that its switches have moved, up to 4 times. Of equals the first
+/// one wins, so the result is the same on every target. 8 KiB beside the workspace.
+///
+/// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
+/// few switches are best, and up to 250 where it is a hundred switches; a product costs 40 to 50
+/// instructions per cell and mode, and looking for a pulse another 60 per cell.
 class EnergySearch {
  public:
-  static constexpr std::size_t kColumnStarts = 32;
-  static constexpr std::size_t kHalfPeriods = 24;
-  static constexpr std::size_t kPhases = 4;
-  static constexpr std::size_t kRandomStarts = 8;
-  static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods * kPhases + kRandomStarts;
-  static constexpr std::size_t kCandidates = 4;
+  static constexpr std::size_t kColumnStarts = 4;
+  static constexpr std::size_t kHalfPeriods = 4;
+  static constexpr std::size_t kRandomStarts = 20;
+  static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods + kRandomStarts;
+  static constexpr std::size_t kPolishings = 4;
 
-  /// Lays out the grid, and fills Phi if it is to be stored. Model, settings and workspace must
-  /// stay as they are until the search is done; the workspace holds Phi in between.
+  /// Lays out the grid. Model, settings and workspace must stay as they are until the search is
+  /// done; the workspace holds a signal in between.
   ///
   /// @returns
   /// * kOk: Ready to `step()`.
@@ -113,72 +117,70 @@ class EnergySearch {
   Status start(const ModalModel& model, const SearchSettings& settings,
                GridWorkspace& workspace) noexcept;
 
-  /// Tries the next starting signal, or refines the next of the best ones.
+  /// Takes a starting signal to where the fixed point rests, or turns one pulse and lets the fixed
+  /// point run again, or refines what a climb has ended on.
   ///
   /// @returns
-  /// * kOk: Tried; `done()` tells whether it was the last.
-  /// * kTooManySwitches: With the last start: the best signal has more than kMaxSwitches switches.
+  /// * kOk: `done()` tells whether it was the last step.
+  /// * kTooManySwitches: With the last step: the best signal has more than kMaxSwitches switches.
   ///   `result()` is then the best of those that have fewer, which is not the maximum: shorten T.
   Status step(const ModalModel& model, GridWorkspace& workspace) noexcept;
 
-  bool done() const noexcept { return next_step_ == step_count_; }
+  bool done() const noexcept { return climbs_made_ == climbs_; }
   /// @returns From 0 to 1.
   double progress() const noexcept;
   /// @returns The best so far; with `done()`, the result.
   const MaximumEnergy& result() const noexcept { return result_; }
 
-  /// E_0, E_1, ... of the fixed point, for a = 1: the whole run of kPaper, or that of the last
-  /// start of kBest; the first kTraceLength of them.
+  /// E_0, E_1, ... of the fixed point, for a = 1: the whole run of kPaper, or the last one of
+  /// kBest; the first kTraceLength of them.
   Span<const double> trace() const noexcept { return Span<const double>(trace_, trace_count_); }
   static constexpr std::size_t kTraceLength = 64;
 
  private:
-  struct Candidate {
-    double energy = 0.0;
-    SwitchingSignal signal;
-    std::size_t iterations = 0;
-    bool at_rest = false;
-  };
-
-  bool phi_is_stored() const noexcept { return cells_ <= kPhiCells; }
-  void set_start(std::size_t index, Span<std::int8_t> signs) noexcept;
-  template <typename Phi>
-  void try_start(const Phi& phi, const ModalModel& model, GridWorkspace& workspace) noexcept;
-  void keep(const Candidate& candidate) noexcept;
-  void refine_candidate(std::size_t index, const ModalModel& model,
-                        GridWorkspace& workspace) noexcept;
-  void take(const Candidate& candidate) noexcept;
+  void set_start(Span<std::int8_t> signs, Span<double> product) noexcept;
+  void set_to_result(Span<std::int8_t> signs) const noexcept;
+  bool climb(GridWorkspace& workspace) noexcept;
+  void end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  bool is_worth_refining(double energy) const noexcept;
+  void take(double energy) noexcept;
 
   MaximumEnergy result_ = {};
   SearchSettings settings_ = {};
   PhiOperator operator_ = {};
-  Candidate candidates_[kCandidates] = {};
+  SwitchingSignal candidate_ = {};
   double trace_[kTraceLength] = {};
+  double ends_[kStarts] = {};  // What each start has climbed to.
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
   double unstorable_energy_ = 0.0;
-  std::size_t candidate_count_ = 0;
+  double climb_energy_ = 0.0;
   std::size_t trace_count_ = 0;
-  std::size_t next_step_ = 0;
-  std::size_t start_count_ = 0;
-  std::size_t step_count_ = 0;
+  std::size_t climbs_made_ = 0;
+  std::size_t climbs_ = 0;
   std::size_t cells_ = 0;
+  std::size_t iterations_ = 0;  // Of the first fixed point of this climb.
+  std::size_t turns_ = 0;
+  bool at_rest_ = false;
+  bool climbing_ = false;
+  bool has_result_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);
 
-/// Turns the sign of single cells, the most profitable one first, until none gains.
+/// Turns the signs of one stretch of cells, up to PhiOperator::kMaxPulse of equal sign, if that
+/// gains energy.
 ///
-/// Turning cell i changes the energy by 4 (Phi_ii - x_i (Phi x)_i). Gains below 1e-13 of the energy
-/// are rounding and end the climb, as do 16 turns per cell, which no run has been seen to need.
+/// Turning the cells i to j of sign c changes the energy by 4 (their pulse's energy - c sum of
+/// (Phi x)). The stretch with the largest gain is taken when the pulses' energies are set to their
+/// limits, which are exact far from T; if that one does not gain, the one with the largest gain.
+/// Gains below 1e-9 of the energy are left to the refinement. kMaxPulse sums per cell.
 ///
-/// @tparam Phi PhiMatrix or PhiOperator.
 /// @param[in,out] signs   The pattern.
-/// @param[in,out] product Phi times the pattern, kept up to date.
-/// @returns The number of cells turned.
-template <typename Phi>
-std::size_t turn_single_cells(const Phi& phi, Span<std::int8_t> signs,
-                              Span<double> product) noexcept;
+/// @param[in]     product Phi times the pattern; no longer so if a stretch has been turned.
+/// @returns Whether a stretch was turned.
+bool turn_best_pulse(const PhiOperator& phi, Span<std::int8_t> signs,
+                     Span<const double> product) noexcept;
 
 /// The shift c with which the fixed point climbs for either criterion: 0 for the integral-square
 /// error, and for the energy difference the filter's gain squared times the width of a cell, which

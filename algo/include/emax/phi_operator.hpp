@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxCells = 8192;
 /// Phi is a Toeplitz matrix (what an endless record would give) minus what the output still holds
 /// after T, a form of the modes' states at T. Both are sums over modes of decaying exponentials of
 /// the distance between cells, so one forward and one backward recursion apply Phi to a signal.
-/// About 1.5 KiB, whatever the number of cells. Errors are of the order of rounding relative to the
+/// About 3.6 KiB, whatever the number of cells. Errors are of the order of rounding relative to the
 /// endless record's energy.
 class PhiOperator {
  public:
@@ -38,11 +38,25 @@ class PhiOperator {
   /// Two complex products and two complex sums per mode, cell and direction.
   void multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept;
 
+  /// The same for a signal with any values.
+  void multiply(Span<const double> signal, Span<double> product) const noexcept;
+
   /// product += scale * (column `cell` of Phi). Half the cost of `multiply()`.
   void add_column(std::size_t cell, double scale, Span<double> product) const noexcept;
 
   /// Phi(cell, cell): a product with the Gramian.
-  double diagonal(std::size_t cell) const noexcept;
+  double diagonal(std::size_t cell) const noexcept { return pulse(cell, 1); }
+
+  /// The longest pulse, in cells, that `pulse()` and `pulse_limit()` know.
+  static constexpr std::size_t kMaxPulse = 8;
+
+  /// The energy of a signal that is 1 on `width` cells from `cell` on and 0 elsewhere: a product
+  /// with the Gramian. 1 <= width <= kMaxPulse, and the pulse ends at T or before.
+  double pulse(std::size_t cell, std::size_t width) const noexcept;
+
+  /// No pulse of that width has more energy than this, which is what it has in an endless record;
+  /// for the energy difference, at the sensor's output alone. Free of charge.
+  double pulse_limit(std::size_t width) const noexcept { return pulse_limit_[width - 1]; }
 
   /// No element of the diagonal is larger than this, which is that of an endless record; for the
   /// energy difference, that of the sensor alone. Free of charge.
@@ -50,6 +64,9 @@ class PhiOperator {
 
  private:
   Complex held_after_end(std::size_t mode, const Complex* state) const noexcept;
+  template <typename Value>
+  void apply(Span<const Value> signal, Span<double> product) const noexcept;
+  void fill_pulses(std::size_t modes_of_limit) noexcept;
 
   Complex step_[kMaxModes] = {};         // e^(p h)
   Complex correlation_[kMaxModes] = {};  // the Toeplitz part at distance d >= 1 is Re sum
@@ -58,6 +75,8 @@ class PhiOperator {
   Complex gramian_[kMaxModes][kMaxModes] = {};
   Complex conjugate_gramian_[kMaxModes][kMaxModes] = {};
   Complex pole_h_[kMaxModes] = {};
+  double endless_pulse_[kMaxPulse] = {};
+  double pulse_limit_[kMaxPulse] = {};
   double endless_diagonal_ = 0.0;
   double diagonal_limit_ = 0.0;
   double duration_s_ = 0.0;
