@@ -199,7 +199,8 @@ TEST(Evaluation, MonteCarloStaysBelowTheCorner) {
   trial_settings.box = kTable2.u;
   trial_settings.search.duration_s = settings.duration_s;
   const auto trials = std::make_unique<emax::EnergyTrials>();
-  ASSERT_EQ(trials->start(evaluation.model(), evaluation.maximum(), trial_settings), Status::kOk);
+  ASSERT_EQ(trials->start(evaluation.model(), evaluation.maximum(), trial_settings, *workspace),
+            Status::kOk);
   const double corner = 1.037 * 1.037 * trials->energy_of({1.040, 4067.0, 0.3178}, *workspace);
   // Known to 8 digits; a grid alone costs less than 1e-4 of it.
   EXPECT_LT(corner, 0.00513469925);
@@ -329,9 +330,10 @@ TEST(Evaluation, HistoryDoesNotMatter) {
 TEST(Evaluation, CopyGoesOnByItself) {
   const auto original = std::make_unique<Evaluation>();
   ASSERT_EQ(original->start_from_model(kTable2, quick_settings()), Status::kOk);
-  for (int i = 0; i < 150; ++i) {
+  while (original->stage() != Stage::kMonteCarlo) {
     original->step();
   }
+  original->step();
   ASSERT_EQ(original->stage(), Stage::kMonteCarlo);
   const auto copy = std::make_unique<Evaluation>(*original);
   finish(*original);
@@ -359,8 +361,9 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
     ASSERT_LE(evaluation.progress(), 1.0);
     evaluation.step();
   }
-  const std::vector<Stage> expected = {Stage::kFitDraws, Stage::kEnergy, Stage::kAdaptive,
-                                       Stage::kMonteCarlo, Stage::kTrend};
+  const std::vector<Stage> expected = {Stage::kFitDraws, Stage::kEnergy,     Stage::kBound,
+                                       Stage::kAdaptive, Stage::kMonteCarlo, Stage::kGuard,
+                                       Stage::kTrend};
   ASSERT_EQ(stages, expected);
   EXPECT_EQ(evaluation.stage(), Stage::kDone);
   EXPECT_EQ(evaluation.progress(), 1.0);
@@ -374,6 +377,7 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
 TEST(Evaluation, NamesOfStages) {
   EXPECT_STREQ(emax::app::name_of(Stage::kMonteCarlo), "Monte Carlo");
   EXPECT_STREQ(emax::app::name_of(Stage::kAdaptive), "number of trials");
+  EXPECT_STREQ(emax::app::name_of(Stage::kGuard), "guard");
   EXPECT_STREQ(emax::app::name_of(Stage::kTrend), "trend");
 }
 

@@ -28,6 +28,9 @@ constexpr char kWrongUncertainty[] = "An uncertainty is below 0 or not a number;
 constexpr char kBoxTooLarge[] =
     "The ranges of the parameters, estimate minus to plus standard uncertainty, leave what a "
     "device may be (S and f0 above 0, damping from 1e-4 to below 1); give smaller uncertainties.";
+constexpr char kNormalTooWide[] =
+    "Six standard deviations from the estimate leave what a device may be (S and f0 above 0, "
+    "damping from 1e-4 to below 1), or the covariance is none; give smaller uncertainties.";
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
     "below 1, because fit and grid follow the resonance.";
@@ -43,7 +46,8 @@ constexpr char kTooManySwitches[] =
 constexpr char kTrialsFailed[] =
     "The energies of the trials cannot be summed up; check the units of the parameters.";
 
-bool is_box_side_valid(const Device& device, double side) noexcept {
+/// Whether all parameters moved by `side` times their uncertainties are still a device.
+bool is_side_valid(const Device& device, double side) noexcept {
   const Accelerometer end = {
       device.estimate.sensitivity + side * device.u.sensitivity,
       device.estimate.natural_frequency_hz + side * device.u.natural_frequency_hz,
@@ -64,10 +68,14 @@ const char* name_of(Stage stage) noexcept {
       return "fit";
     case Stage::kEnergy:
       return "energy";
+    case Stage::kBound:
+      return "bound";
     case Stage::kAdaptive:
       return "number of trials";
     case Stage::kMonteCarlo:
       return "Monte Carlo";
+    case Stage::kGuard:
+      return "guard";
     case Stage::kTrend:
       return "trend";
     case Stage::kDone:
@@ -130,6 +138,8 @@ Status Evaluation::begin(const Settings& settings) noexcept {
   draws_ = {};
   peak_ = {};
   settling_ = {};
+  absolute_error_ = {};
+  guard_ = {};
   maximum_ = {};
   adaptive_trials_ = {};
   adaptive_result_ = {};
@@ -140,6 +150,7 @@ Status Evaluation::begin(const Settings& settings) noexcept {
   trend_search_runs_ = false;
   limit_mps2_ = 0.0;
   stored_ = 0;
+  has_bound_ = false;
   has_monte_carlo_ = false;
   if (check(settings).setting != nullptr) {
     return fail(Status::kInvalidArgument, Stage::kIdle, kWrongSetting);
@@ -175,6 +186,7 @@ Status Evaluation::prepare() noexcept {
   }
   peak_ = model_.peak();
   settling_ = model_.settling_time(kSettled);
+  absolute_error_ = largest_absolute_error(model_, settings_.duration_s);
   return Status::kOk;
 }
 
@@ -184,8 +196,11 @@ Status Evaluation::check_box() noexcept {
       !is_uncertainty(u.damping)) {
     return fail(Status::kInvalidArgument, Stage::kIdle, kWrongUncertainty);
   }
-  if (!is_box_side_valid(device_, -1.0) || !is_box_side_valid(device_, 1.0)) {
-    return fail(Status::kInvalidArgument, Stage::kMonteCarlo, kBoxTooLarge);
+  const bool is_box = settings_.distribution == Distribution::kBox;
+  const double widest = trial_scale() * (is_box ? 1.0 : EnergyTrials::kMaxDeviations);
+  if (!is_side_valid(device_, -widest) || !is_side_valid(device_, widest)) {
+    return fail(Status::kInvalidArgument, Stage::kMonteCarlo,
+                is_box ? kBoxTooLarge : kNormalTooWide);
   }
   return Status::kOk;
 }
@@ -212,11 +227,17 @@ void Evaluation::step() noexcept {
     case Stage::kEnergy:
       step_energy();
       return;
+    case Stage::kBound:
+      step_bound();
+      return;
     case Stage::kAdaptive:
       step_adaptive();
       return;
     case Stage::kMonteCarlo:
       step_monte_carlo();
+      return;
+    case Stage::kGuard:
+      step_guard();
       return;
     case Stage::kTrend:
       step_trend();
@@ -234,10 +255,14 @@ double Evaluation::progress() const noexcept {
       return static_cast<double>(draws_.made()) / kFitDraws;
     case Stage::kEnergy:
       return search_.progress();
+    case Stage::kBound:
+      return bound_.progress();
     case Stage::kAdaptive:
       return adaptive_progress();
     case Stage::kMonteCarlo:
       return monte_carlo_progress();
+    case Stage::kGuard:
+      return guard_.progress();
     case Stage::kTrend: {
       const double running = trend_search_runs_ ? search_.progress() : 0.0;
       return (static_cast<double>(trend_done_) + running) /
@@ -291,6 +316,11 @@ double Evaluation::covariance(std::size_t i, std::size_t j) const noexcept {
 
 double Evaluation::rms_error_v() const noexcept {
   return sqrt(energy_v2s() / settings_.duration_s);
+}
+
+double Evaluation::trial_scale() const noexcept {
+  const double ratio = source_ == Source::kPoints ? fit_.result().birge_ratio : 1.0;
+  return settings_.birge && ratio > 1.0 ? ratio : 1.0;
 }
 
 SearchSettings Evaluation::search_settings(double duration_s) const noexcept {
@@ -355,6 +385,25 @@ void Evaluation::step_energy() noexcept {
       trace_[i] = trace[i];
     }
   }
+  begin_bound();
+}
+
+// A device and time for which no bound passes its check, or for which its grid would be too large,
+// are reported without one.
+void Evaluation::begin_bound() noexcept {
+  if (bound_.start(model_, settings_.duration_s, workspace_) != Status::kOk) {
+    begin_trials();
+    return;
+  }
+  stage_ = Stage::kBound;
+}
+
+void Evaluation::step_bound() noexcept {
+  const Status status = bound_.step(model_, workspace_);
+  if (status == Status::kOk && !bound_.done()) {
+    return;
+  }
+  has_bound_ = status == Status::kOk;
   begin_trials();
 }
 
@@ -365,13 +414,21 @@ void Evaluation::begin_trials() noexcept {
     return;
   }
   TrialSettings trial_settings;
-  trial_settings.box = u;
+  const double scale = trial_scale();
+  trial_settings.distribution = settings_.distribution;
+  trial_settings.box = {scale * u.sensitivity, scale * u.natural_frequency_hz, scale * u.damping};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      trial_settings.covariance[i][j] = scale * scale * covariance(i, j);
+    }
+  }
   trial_settings.generator = seeded_generator();
   trial_settings.gain_follows = settings_.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings_.duration_s);
-  Status status = trials_.start(model_, maximum_, trial_settings);
+  Status status = trials_.start(model_, maximum_, trial_settings, workspace_);
   if (status != Status::kOk) {
-    (void)fail(status, Stage::kMonteCarlo, kBoxTooLarge);
+    const bool is_box = settings_.distribution == Distribution::kBox;
+    (void)fail(status, Stage::kMonteCarlo, is_box ? kBoxTooLarge : kNormalTooWide);
     return;
   }
   if (!settings_.adaptive) {
@@ -451,7 +508,19 @@ void Evaluation::step_monte_carlo() noexcept {
   }
   device_at_maximum_ = trials_.device(result.trial_of_maximum);
   has_monte_carlo_ = true;
-  begin_trend();
+  if (settings_.method == Method::kPaper) {
+    begin_trend();
+    return;
+  }
+  guard_.start(monte_carlo_trials_, result.trial_of_maximum);
+  stage_ = Stage::kGuard;
+}
+
+void Evaluation::step_guard() noexcept {
+  (void)guard_.step(trials_, search_, workspace_);  // A search that fails counts as disagreement.
+  if (guard_.done()) {
+    begin_trend();
+  }
 }
 
 void Evaluation::begin_trend() noexcept {

@@ -99,7 +99,7 @@ void write_method(const Settings& settings, TextWriter& out) noexcept {
   out.line();
   label(out, "Method");
   if (settings.method == Method::kBest) {
-    out.text("best: many starts, fixed point and single cells, the best refined").line();
+    out.text("best: many starts, fixed point and pulses, the best refined").line();
     return;
   }
   out.text("paper: fixed point from the first column of Phi, step ");
@@ -364,6 +364,23 @@ void write_how_found(const Evaluation& evaluation, TextWriter& out) noexcept {
   out.integer(maximum.iterations).text(" iterations").line();
 }
 
+void write_bound(const Evaluation& evaluation, TextWriter& out) noexcept {
+  label(out, "Upper bound");
+  if (!evaluation.has_bound()) {
+    out.text("none passed its check for this device and time").line();
+    return;
+  }
+  const double energy = evaluation.energy_v2s();
+  const double bound = evaluation.bound_v2s();
+  out.scientific(bound, 8)
+      .text(" V^2 s: proven, no signal of any shape within +-a has more")
+      .line();
+  if (energy > 0.0) {
+    label(out, "Gap").general(kPercent * (bound - energy) / energy, 4);
+    out.text(" % of E, between which the true maximum lies").line();
+  }
+}
+
 void write_energy(const Evaluation& evaluation, TextWriter& out) noexcept {
   const double energy = evaluation.energy_v2s();
   heading(out, "MAXIMUM ENERGY (at the estimates)");
@@ -381,10 +398,13 @@ void write_energy(const Evaluation& evaluation, TextWriter& out) noexcept {
   write_switching_times(evaluation.maximum().signal, out);
   write_how_found(evaluation, out);
   if (evaluation.settings().method == Method::kBest) {
-    out.text("  The best signal found. Not proven: this version computes no upper bound.\n");
+    out.text("  The best signal found.\n");
   } else {
     out.text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
   }
+  write_bound(evaluation, out);
+  label(out, "Largest |y|").general(evaluation.absolute_error_v(), 7);
+  out.text(" V, by another signal: a times the integral of |k|").line();
 }
 
 // Monte Carlo
@@ -435,20 +455,45 @@ void write_maximum(const Evaluation& evaluation, const MonteCarloResult& result,
   out.general(at.natural_frequency_hz, 8).text(" Hz, beta = ").general(at.damping, 8).line();
 }
 
+void write_guard(const EnergyGuard& guard, TextWriter& out) noexcept {
+  if (guard.searches() == 0) {
+    return;
+  }
+  label(out, "Guard").integer(guard.searches()).text(" full searches, ");
+  out.integer(guard.disagreements());
+  out.text(guard.disagreements() == 1 ? " disagreement" : " disagreements").line();
+  if (guard.disagreements() > 0) {
+    out.text("  WARNING: in these trials a search found up to ");
+    out.general(kPercent * guard.largest_excess(), 3)
+        .text(
+            " % more energy with another signal than\n"
+            "  the best one at the estimates. Maximum and intervals are too low; the parameters' "
+            "ranges\n"
+            "  are too wide for one signal, or two signals are nearly equal.\n");
+  }
+}
+
 void write_monte_carlo(const Evaluation& evaluation, TextWriter& out) noexcept {
-  heading(out, "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))");
+  const bool is_box = evaluation.settings().distribution == Distribution::kBox;
+  heading(out, is_box ? "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))"
+                      : "MONTE CARLO (S, f0 and beta jointly normal, with their covariance)");
   if (!evaluation.has_monte_carlo()) {
     out.text("  Not run: all uncertainties are zero.\n");
     return;
   }
   const MonteCarloResult result = evaluation.monte_carlo().result();
   write_trials(evaluation, result, out);
+  if (evaluation.trial_scale() > 1.0) {
+    label(out, "Uncertainties").text("times the Birge ratio, ");
+    out.general(evaluation.trial_scale(), 4).line();
+  }
   write_maximum(evaluation, result, out);
   label(out, "Mean of E").scientific(result.mean, 8).text(" V^2 s").line();
   label(out, "u(E)").scientific(result.u, 2).text(" V^2 s, the standard deviation of the trials");
   out.line();
   write_interval(out, "Symmetric interval", result.probability, result.symmetric);
   write_interval(out, "Shortest interval", result.probability, result.shortest);
+  write_guard(evaluation.guard(), out);
 }
 
 // Trend

@@ -203,14 +203,18 @@ void write_energy(const Evaluation& evaluation, JsonWriter& json) noexcept {
   json.number("E", evaluation.energy_v2s());
   json.number("xi", evaluation.xi());
   json.number("rms", evaluation.rms_error_v());
-  json.null("bound");
+  if (evaluation.has_bound()) {
+    json.number("bound", evaluation.bound_v2s());
+  } else {
+    json.null("bound");
+  }
   json.open_row("switch_times");
   for (const double time_s : maximum.signal.times_s()) {
     json.number(nullptr, time_s);
   }
   json.close_row();
   json.integer("iterations", maximum.iterations);
-  json.null("absolute_error");
+  json.number("absolute_error", evaluation.absolute_error_v());
   json.close();
 }
 
@@ -240,7 +244,11 @@ void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept 
   json.number("u", result.u);
   json.pair("interval", result.symmetric.low, result.symmetric.high);
   json.pair("shortest", result.shortest.low, result.shortest.high);
-  json.null("disagreements");
+  if (evaluation.guard().searches() > 0) {
+    json.integer("disagreements", evaluation.guard().disagreements());
+  } else {
+    json.null("disagreements");
+  }
   json.close();
 }
 

@@ -8,6 +8,7 @@
 
 #include "emax/app/version.hpp"
 
+#include "certify_command.hpp"
 #include "console.hpp"
 #include "nearest.hpp"
 #include "options.hpp"
@@ -34,7 +35,7 @@ accelerometer as large as possible, and the uncertainty of that maximum.
 Commands
   report     measures and identifies the device, finds the maximum energy, its
              uncertainty by Monte Carlo and its trend over T, prints a report
-  certify    proves how far the maximum can be from the truth (not yet)
+  certify    proves how far the maximum can be from the truth, for any signal
   compare    ranks devices by their results (not yet)
   scpi       the instrument's console (not yet)
 )";
@@ -70,6 +71,7 @@ Examples
   emax report --points host_tests/data/djb_a1800v.csv --out results
   emax report --model 1.037,4073,0.3182,0.003,6,0.0004 --time 0.01
   emax report --model 1.037,4073,0.3182 --order 4 --json
+  emax certify --model 1.037,4073,0.3182 --effort 30 --out certificate.json
 )";
 
 struct LaterCommand {
@@ -78,7 +80,6 @@ struct LaterCommand {
 };
 
 constexpr LaterCommand kLaterCommands[] = {
-    {"certify", "certify: not yet; use emax report, whose energy has been reached by a signal"},
     {"compare", "compare: not yet; use emax report --json for each device"},
     {"scpi", "scpi: not yet; use emax report"},
 };
@@ -122,7 +123,11 @@ Problem run(Arguments arguments) {
   }
   const std::string_view command = arguments[0];
   const bool is_report = command == "report";
+  const bool is_certify = command == "certify";
   const bool wants_help = contains(arguments, "--help") || contains(arguments, "-h");
+  if (wants_help && is_certify) {
+    return print(emax::host::help_on_certify() + kCommonHelp);
+  }
   if (wants_help || contains(arguments, "--version")) {
     return print_about(is_report, !wants_help);
   }
@@ -130,6 +135,9 @@ Problem run(Arguments arguments) {
     if (command == later.name) {
       return emax::host::bad_input(later.advice);
     }
+  }
+  if (is_certify) {
+    return emax::host::run_certify(arguments.from(1));
   }
   return is_report ? emax::host::run_report(arguments.from(1)) : unknown_command(command);
 }

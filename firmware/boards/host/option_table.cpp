@@ -334,12 +334,17 @@ constexpr Option kOptions[] = {
      [](std::string_view value, ReportOptions& options) {
        return take_number(value, options.settings.probability);
      }},
-    {"distribution", nullptr, "box", "box", "box",
-     "box: uniform within +-u of each parameter; not yet:\n"
-     "normal, with the covariance of the fit",
+    {"distribution", nullptr, "box|normal", "box", "box or normal",
+     "box: uniform within +-u of each parameter; normal:\n"
+     "with the covariance of the fit",
      [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "box", false, "normal", true, options.normal_distribution);
+       return take_choice(value, "box", Distribution::kBox, "normal", Distribution::kNormal,
+                          options.settings.distribution);
      }},
+    {"birge", nullptr, nullptr, nullptr, nullptr,
+     "the trials' uncertainties times the fit's Birge\n"
+     "ratio, if that is above 1",
+     [](std::string_view, ReportOptions& options) { return options.settings.birge = true; }},
     {"seed", nullptr, "A,B,C,D", "123456789,345678901,567890123,789012345",
      "four whole numbers above 0, or three with --generator 1982",
      "start of the random numbers; three numbers will do\n"

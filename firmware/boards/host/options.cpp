@@ -84,13 +84,6 @@ Problem take_option(const Given& given, std::vector<Given>& all, ReportOptions& 
   return {};
 }
 
-Problem check_later_work(const ReportOptions& options) {
-  if (options.normal_distribution) {
-    return bad_input("--distribution: normal is not there yet; use box");
-  }
-  return {};
-}
-
 Problem check_source(const std::vector<Given>& all, const ReportOptions& options) {
   const bool has_model = !options.model_text.empty();
   if (has_model && !options.points_path.empty()) {
@@ -219,9 +212,6 @@ Problem parse_report_options(Span<const std::string_view> arguments, ReportOptio
     if (Problem problem = take_option(given, all, options)) {
       return problem;
     }
-  }
-  if (Problem problem = check_later_work(options)) {
-    return problem;
   }
   if (Problem problem = check_source(all, options)) {
     return problem;

@@ -27,7 +27,6 @@ struct ReportOptions {
   double reference_uncertainty_percent = 0.0;
   sim::BenchSettings bench;
   app::SweepSettings sweep;
-  bool normal_distribution = false;
   bool json = false;
   std::string out_directory;  ///< Empty for no files.
 

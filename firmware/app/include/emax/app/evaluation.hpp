@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/absolute_error.hpp"
 #include "emax/app/settings.hpp"
+#include "emax/energy_bound.hpp"
+#include "emax/energy_guard.hpp"
 #include "emax/energy_search.hpp"
 #include "emax/energy_trials.hpp"
 #include "emax/frequency_response.hpp"
@@ -30,8 +33,10 @@ enum class Stage : std::uint8_t {
   kIdle,
   kFitDraws,  ///< Covariance of the fit by Monte Carlo draws.
   kEnergy,    ///< The largest energy at the estimate.
+  kBound,     ///< What no signal can exceed.
   kAdaptive,  ///< Number of trials by JCGM 101 7.9.
   kMonteCarlo,
+  kGuard,  ///< Full searches for some of the trials.
   kTrend,
   kDone,
   kFailed,
@@ -65,8 +70,9 @@ struct Failure {
 ///       evaluation.step();
 ///     }
 ///
-/// A start of Method::kBest, at most 171 trials, or 100 draws of the fit make one step. With
-/// Method::kPaper a step is one run of the fixed point, which takes iterations times T/step cells.
+/// One run of the fixed point of Method::kBest, at most 171 trials, or 100 draws of the fit make
+/// one step. With Method::kPaper a step is one run of the fixed point, which takes iterations times
+/// T/step cells.
 ///
 /// All memory is inside: at most 150 KiB, of which the grid's workspace is 83 KiB. Energies are
 /// kept for a = 1 and leave through the accessors in V^2 s. Results are those of the settings and
@@ -127,6 +133,10 @@ class Evaluation {
 
   const MaximumEnergy& maximum() const noexcept { return maximum_; }  ///< For a = 1.
   double energy_v2s() const noexcept { return a2() * maximum_.energy; }
+  /// False where no upper bound passed its check.
+  bool has_bound() const noexcept { return has_bound_; }
+  /// No signal within +-a of this T has more energy than this; with `has_bound()`.
+  double bound_v2s() const noexcept { return a2() * bound_.bound(); }
   /// @returns xi = E/(a^2 T), paper equation (7), in (V/(m/s^2))^2.
   double xi() const noexcept { return maximum_.energy / settings_.duration_s; }
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
@@ -138,7 +148,15 @@ class Evaluation {
   /// @returns E_0, E_1, ... of the fixed point for a = 1; Method::kPaper only.
   Span<const double> trace() const noexcept { return Span<const double>(trace_, trace_count_); }
 
+  /// The largest |y(t)| of any signal within +-a of this T, in V, and for a = 1 with its signal.
+  double absolute_error_v() const noexcept { return limit_mps2_ * absolute_error_.value; }
+  const AbsoluteError& absolute_error() const noexcept { return absolute_error_; }
+
   bool has_monte_carlo() const noexcept { return has_monte_carlo_; }
+  /// Repeats some trials by full searches; none for Method::kPaper, whose trials are full runs.
+  const EnergyGuard& guard() const noexcept { return guard_; }
+  /// What the uncertainties are multiplied by for the trials: 1, or the Birge ratio.
+  double trial_scale() const noexcept;
   const AdaptiveResult& adaptive() const noexcept { return adaptive_result_; }
   const MonteCarlo& monte_carlo() const noexcept { return monte_carlo_; }  ///< Values in V^2 s.
   Accelerometer device_at_maximum() const noexcept { return device_at_maximum_; }
@@ -173,10 +191,13 @@ class Evaluation {
   void step_fit_draws() noexcept;
   void begin_energy() noexcept;
   void step_energy() noexcept;
+  void begin_bound() noexcept;
+  void step_bound() noexcept;
   void begin_trials() noexcept;
   void step_adaptive() noexcept;
   void begin_monte_carlo(std::uint32_t trials) noexcept;
   void step_monte_carlo() noexcept;
+  void step_guard() noexcept;
   void begin_trend() noexcept;
   void step_trend() noexcept;
   void add_trend_point(double energy) noexcept;
@@ -184,7 +205,9 @@ class Evaluation {
 
   GridWorkspace workspace_;
   EnergySearch search_;
+  EnergyBound bound_;
   EnergyTrials trials_;
+  EnergyGuard guard_;
   MonteCarlo monte_carlo_;
   // Points at monte_carlo_ during kAdaptive, at nothing otherwise.
   AdaptiveTrials adaptive_trials_;
@@ -195,6 +218,7 @@ class Evaluation {
   ModalModel model_;
   Peak peak_;
   SettlingTime settling_;
+  AbsoluteError absolute_error_;
   MaximumEnergy maximum_;
   AdaptiveResult adaptive_result_;
   Accelerometer device_at_maximum_;
@@ -210,6 +234,7 @@ class Evaluation {
   std::uint32_t monte_carlo_trials_ = 0;
   Source source_ = Source::kPoints;
   Stage stage_ = Stage::kIdle;
+  bool has_bound_ = false;
   bool has_monte_carlo_ = false;
   bool trend_search_runs_ = false;
 };

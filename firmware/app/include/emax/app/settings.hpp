@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "emax/energy_search.hpp"
+#include "emax/energy_trials.hpp"
 #include "emax/modal_model.hpp"
 #include "emax/status.hpp"
 #include "emax/wichmann_hill.hpp"
@@ -43,6 +44,8 @@ struct Settings {
   std::uint32_t trials = 200000;
   bool adaptive = false;  ///< JCGM 101 7.9 finds the number of trials; `trials` is then unused.
   double probability = 0.95;
+  Distribution distribution = Distribution::kBox;
+  bool birge = false;  ///< Trials take the uncertainties times the fit's Birge ratio, if above 1.
   std::array<std::uint32_t, 4> seed = {123456789, 345678901, 567890123, 789012345};
   Generator generator = Generator::k2006;
   std::array<double, kMaxTrendPoints> trend_s = {0.002, 0.004, 0.006, 0.008, 0.010};
