@@ -395,9 +395,26 @@ class Options(ProgramTest):
             ("monte_carlo", "--generator", "1982", "--seed", "1,2,3"),
             ("monte_carlo", "--seed", "1,2,3,4"),
             ("monte_carlo", "--adaptive"),
+            ("monte_carlo", "--distribution", "normal"),
         ]:
             with self.subTest(choice):
                 self.assertNotEqual(self.json_of(*MODEL, *QUICK, *choice)[part], reference[part])
+
+    def test_normal_distribution_and_birge_ratio(self):
+        # Energies are nearly linear in the parameters: u(E) of the normal distribution is sqrt(3) times that of the
+        # box of half-width u where parameters are uncorrelated; a standard deviation of 1000 draws is good to 2.2 %.
+        box = self.json_of(*MODEL, *QUICK)["monte_carlo"]
+        normal = self.json_of(*MODEL, *QUICK, "--distribution", "normal")["monte_carlo"]
+        self.assertAlmostEqual(normal["u"] / box["u"], 3**0.5, delta=0.15)
+        self.assertAlmostEqual(normal["mean"], box["mean"], delta=5 * normal["u"] / 1000**0.5)
+        self.assertEqual([box["disagreements"], normal["disagreements"]], [0, 0])
+        table = ["--points", DATA / "djb_a1800v.csv", *QUICK, "--distribution", "normal"]
+        plain, birge = self.json_of(*table), self.json_of(*table, "--birge")
+        ratio = (plain["model"]["chi2"] / plain["model"]["dof"]) ** 0.5
+        scaled = birge["monte_carlo"]["u"] / plain["monte_carlo"]["u"]
+        self.assertAlmostEqual(scaled / ratio, 1.0, delta=0.05)
+        self.assertIn("times the Birge ratio, 10.3", self.succeed("report", *table, "--birge"))
+        self.refuse(["report", "--model", "1.037,4073,0.3182,0.003,6,0.06", "--distribution", "normal"], "damping")
 
     def test_paper_method(self):
         # The plain fixed point from Phi's first column, step 2 us: at rest after 6 iterations.
@@ -419,11 +436,9 @@ class BadOptions(ProgramTest):
         self.refuse([], "emax: ", "expected emax report")
         self.refuse(["reprot"], "emax: reprot: ", "did you mean emax report?")
         self.refuse(["--json"], "emax: --json: ", "emax report")
-        for command in ["certify", "compare", "scpi"]:
+        for command in ["compare", "scpi"]:
             self.refuse([command, "a"], f"emax: {command}: not yet", "use emax report")
-
-    def test_later_work(self):
-        self.refuse_option("--distribution", "normal", "not there yet", "box")
+        self.refuse(["certify"], "emax: certify: no device; ", "expected --model S,f0,beta or --points FILE")
 
     def test_unknown_options(self):
         meant = {"--tirals": "trials", "--iter": "iterations", "--outdir": "out", "--probabilty": "probability"}
@@ -881,7 +896,7 @@ class Endings(ProgramTest):
         names = "points model reference-uncertainty order cutoff gain time limit criterion method step iterations"
         names += " bench-seed bench-truth bench-noise bench-fault"
         names += " level acceleration-limit drive-limit slew settle cycles"
-        names += " trials adaptive probability distribution seed generator trend json out help version"
+        names += " trials adaptive probability distribution birge seed generator trend json out help version"
         for name in names.split():
             self.assertIn(f"  --{name} ", long)
 
