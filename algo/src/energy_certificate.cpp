@@ -623,9 +623,9 @@ bool EnergyCertificate::propagate(std::int8_t* signs) const noexcept {
       for (std::size_t k = i + 2; k < grid_.cells && grid_.run_end[i + 1] > k; ++k) {
         for (std::size_t j = i + 1; j < k && grid_.run_end[j] > k; ++j) {
           // v_j alone against v_i and v_k is excluded.
-          const int first = signs[i];
-          const int middle = signs[j];
-          const int last = signs[k];
+          const std::int8_t first = signs[i];
+          const std::int8_t middle = signs[j];
+          const std::int8_t last = signs[k];
           if (first != 0 && first == last && middle != first) {
             if (middle != 0) {
               return false;

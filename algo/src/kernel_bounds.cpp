@@ -214,7 +214,7 @@ void KernelBounds::fill_row(std::size_t row) noexcept {
   constexpr std::size_t kChunk = 256;
   const Span<const Mode> modes = model_->modes();
   double sums[3] = {};
-  double terms[3][kChunk];
+  double terms[3][kChunk] = {};
   // The trapezoidal rule: an end of the range of one formula counts half.
   const auto add = [&](std::size_t count, bool starts, bool ends) {
     for (std::size_t n = 0; n < 3; ++n) {
@@ -287,7 +287,8 @@ void KernelBounds::fill_row(std::size_t row) noexcept {
 double KernelBounds::bound(int order, double from_s, double to_s) const noexcept {
   const auto n = static_cast<std::size_t>(order);
   const double t_step_s = static_cast<double>(stride_) * step_s_;
-  const double last = static_cast<double>(intervals_ / stride_);
+  const std::size_t last_row = intervals_ / stride_;
+  const double last = static_cast<double>(last_row);
   const double low = floor(maximum(from_s, 0.0) / t_step_s - 1e-6);
   const double high = floor(to_s / t_step_s + 1e-6) + 1.0;
   double largest = 0.0;
