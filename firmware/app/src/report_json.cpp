@@ -1,9 +1,9 @@
 // results.json.
+#include "emax/app/json_writer.hpp"
 #include "emax/app/report.hpp"
 #include "emax/app/version.hpp"
 #include "emax/elementary.hpp"
 
-#include "json_writer.hpp"
 #include "report_parts.hpp"
 
 namespace emax::app {
@@ -18,8 +18,8 @@ const char* source_of(const Evaluation& evaluation, const Measurement* measureme
   return evaluation.source() == Source::kPoints ? "points" : "model";
 }
 
-void write_model(const Evaluation& evaluation, const char* source_name,
-                 const Measurement* measurement, JsonWriter& json) noexcept {
+void write_model(const Evaluation& evaluation, const ReportContext& context,
+                 JsonWriter& json) noexcept {
   const Device& device = evaluation.device();
   const bool is_fit = evaluation.source() == Source::kPoints;
   json.open("model");
@@ -51,9 +51,9 @@ void write_model(const Evaluation& evaluation, const char* source_name,
   } else {
     json.null("common_percent");
   }
-  json.words("source", source_of(evaluation, measurement));
-  if (source_name != nullptr) {
-    json.words("name", source_name);
+  json.words("source", source_of(evaluation, context.measurement));
+  if (context.source_name != nullptr) {
+    json.words("name", context.source_name);
   } else {
     json.null("name");
   }
@@ -170,11 +170,20 @@ void write_bench(const Measurement* measurement, const Evaluation* refused,
   json.close();
 }
 
-void write_filter(const Butterworth& filter, JsonWriter& json) noexcept {
+const char* name_of(GainMode mode) noexcept {
+  if (mode == GainMode::kFixed) {
+    return "fixed";
+  }
+  return mode == GainMode::kTrack ? "track" : "auto";
+}
+
+void write_filter(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  const Butterworth& filter = evaluation.model().filter();
   json.open("filter");
   json.integer("order", static_cast<std::uint64_t>(filter.order));
   json.number("cutoff", filter.cutoff_hz);
   json.number("gain", filter.gain);
+  json.words("gain_mode", name_of(evaluation.settings().gain_mode));
   json.close();
 }
 
@@ -228,6 +237,8 @@ void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept 
   json.open("monte_carlo");
   json.integer("trials", result.trials);
   json.number("probability", result.probability);
+  json.words("distribution",
+             evaluation.settings().distribution == Distribution::kBox ? "box" : "normal");
   json.open_row("seed");
   for (const std::uint32_t seed : evaluation.settings().seed) {
     json.integer(nullptr, seed);
@@ -269,14 +280,38 @@ void write_trend(const Evaluation& evaluation, JsonWriter& json) noexcept {
   json.close();
 }
 
-void write_all(const Evaluation& evaluation, const char* source_name,
-               const Measurement* measurement, TextWriter& out) noexcept {
+void write_label(const char* name, const char* words, JsonWriter& json) noexcept {
+  if (words != nullptr) {
+    json.quote(name, words);
+  } else {
+    json.null(name);
+  }
+}
+
+void write_head(const Labels& labels, JsonWriter& json) noexcept {
+  json.words("version", kVersion);
+  if (!labels.any()) {
+    return;
+  }
+  json.open("labels");
+  write_label("device", labels.device, json);
+  write_label("serial", labels.serial, json);
+  write_label("operator", labels.operated_by, json);
+  write_label("date", labels.date, json);
+  write_label("note", labels.note, json);
+  json.close();
+}
+
+}  // namespace
+
+void write_json(const Evaluation& evaluation, const ReportContext& context,
+                TextWriter& out) noexcept {
   JsonWriter json(out);
   json.open(nullptr);
-  json.words("version", kVersion);
-  write_model(evaluation, source_name, measurement, json);
-  write_bench(measurement, nullptr, json);
-  write_filter(evaluation.model().filter(), json);
+  write_head(context.labels, json);
+  write_model(evaluation, context, json);
+  write_bench(context.measurement, nullptr, json);
+  write_filter(evaluation, json);
   write_impulse_response(evaluation, json);
   write_energy(evaluation, json);
   write_monte_carlo(evaluation, json);
@@ -285,24 +320,13 @@ void write_all(const Evaluation& evaluation, const char* source_name,
   out.line();
 }
 
-}  // namespace
-
-void write_json(const Evaluation& evaluation, const char* source_name, TextWriter& out) noexcept {
-  write_all(evaluation, source_name, nullptr, out);
-}
-
-void write_json(const Evaluation& evaluation, const Measurement& measurement,
-                TextWriter& out) noexcept {
-  write_all(evaluation, nullptr, &measurement, out);
-}
-
-void write_measurement_json(const Measurement& measurement, const Evaluation* refused,
+void write_measurement_json(const ReportContext& context, const Evaluation* refused,
                             TextWriter& out) noexcept {
   JsonWriter json(out);
   json.open(nullptr);
-  json.words("version", kVersion);
+  write_head(context.labels, json);
   json.null("model");
-  write_bench(&measurement, refused, json);
+  write_bench(context.measurement, refused, json);
   for (const char* part : {"filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
     json.null(part);
   }

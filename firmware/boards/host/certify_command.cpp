@@ -26,6 +26,7 @@
 #include "options.hpp"
 #include "points_file.hpp"
 #include "stop_request.hpp"
+#include "text_file.hpp"
 
 namespace emax::host {
 
@@ -189,26 +190,26 @@ class CertificateFile final {
 
 // Finds the device and the signal with the largest energy known.
 Problem find_energy(const ReportOptions& options, app::Evaluation& evaluation) {
+  static app::EvaluationWorkspace workspace;
   Status status = Status::kOk;
   if (options.points_path.empty()) {
-    status = evaluation.start_from_model(options.device, options.settings);
+    status = evaluation.start_from_model(options.device, options.settings, workspace,
+                                         app::Goal::kEnergy);
   } else {
     static FrequencyResponse points;
     if (Problem problem =
             read_points(options.points_path, options.reference_uncertainty_percent, points)) {
       return problem;
     }
-    status = evaluation.start_from_points(points, options.settings);
+    status = evaluation.start_from_points(points, options.settings, workspace, app::Goal::kEnergy);
   }
   ConsoleProgress progress;
-  while (
-      status == Status::kOk && !evaluation.done() &&
-      (evaluation.stage() == app::Stage::kFitDraws || evaluation.stage() == app::Stage::kEnergy)) {
+  while (status == Status::kOk && !evaluation.done() && !evaluation.has_energy()) {
     if (stop_requested()) {
       return stopped();
     }
     progress.show(name_of(evaluation.stage()), evaluation.progress());
-    evaluation.step();
+    evaluation.step(workspace);
     status = evaluation.status();
   }
   if (status == Status::kOk) {
@@ -219,7 +220,7 @@ Problem find_energy(const ReportOptions& options, app::Evaluation& evaluation) {
   write_failure(evaluation, writer);
   const bool is_search = status == Status::kTooManyCells || status == Status::kTooManySwitches;
   const std::string source =
-      options.points_path.empty() ? "--model" : name_of_points(options.points_path);
+      options.points_path.empty() ? "--model" : name_of_input(options.points_path);
   return bad_input((is_search ? "--time" : source) + ": " + sentence.text());
 }
 

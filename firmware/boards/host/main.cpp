@@ -9,6 +9,7 @@
 #include "emax/app/version.hpp"
 
 #include "certify_command.hpp"
+#include "compare_command.hpp"
 #include "console.hpp"
 #include "nearest.hpp"
 #include "options.hpp"
@@ -36,7 +37,7 @@ Commands
   report     measures and identifies the device, finds the maximum energy, its
              uncertainty by Monte Carlo and its trend over T, prints a report
   certify    proves how far the maximum can be from the truth, for any signal
-  compare    ranks devices by their results (not yet)
+  compare    ranks devices by their results
   scpi       the instrument's console (not yet)
 )";
 
@@ -80,7 +81,6 @@ struct LaterCommand {
 };
 
 constexpr LaterCommand kLaterCommands[] = {
-    {"compare", "compare: not yet; use emax report --json for each device"},
     {"scpi", "scpi: not yet; use emax report"},
 };
 
@@ -128,6 +128,9 @@ Problem run(Arguments arguments) {
   if (wants_help && is_certify) {
     return print(emax::host::help_on_certify() + kCommonHelp);
   }
+  if (wants_help && command == "compare") {
+    return print(emax::host::help_on_compare() + kCommonHelp);
+  }
   if (wants_help || contains(arguments, "--version")) {
     return print_about(is_report, !wants_help);
   }
@@ -138,6 +141,9 @@ Problem run(Arguments arguments) {
   }
   if (is_certify) {
     return emax::host::run_certify(arguments.from(1));
+  }
+  if (command == "compare") {
+    return emax::host::run_compare(arguments.from(1));
   }
   return is_report ? emax::host::run_report(arguments.from(1)) : unknown_command(command);
 }

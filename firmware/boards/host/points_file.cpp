@@ -2,87 +2,20 @@
 #include "points_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
-#include <poll.h>
 #include <string_view>
-#include <unistd.h>
 
 #include "emax/app/points_reader.hpp"
 #include "emax/app/reference_uncertainty.hpp"
 #include "emax/app/text_writer.hpp"
 
 #include "console.hpp"
-#include "stop_request.hpp"
+#include "text_file.hpp"
 
 namespace emax::host {
 
 namespace {
 
 constexpr std::size_t kMaxFileSize = std::size_t{1} << 20;
-
-constexpr int kPollInterval = 100;  // In milliseconds.
-
-// A file that is open for reading, or -1 and errno.
-class InputFile final {
- public:
-  explicit InputFile(const std::string& path)
-      : file_(path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
-  ~InputFile() {
-    if (file_ > STDIN_FILENO) {
-      close(file_);
-    }
-  }
-
-  bool is_open() const noexcept { return file_ >= 0; }
-
-  // As read(), but a stop request ends the wait for somebody who types.
-  ssize_t read_some(char* data, std::size_t size) const noexcept {
-    pollfd ready = {file_, POLLIN, 0};
-    while (poll(&ready, 1, kPollInterval) == 0 && !stop_requested()) {
-    }
-    if (stop_requested()) {
-      errno = EINTR;
-      return -1;
-    }
-    return read(file_, data, size);
-  }
-
- private:
-  int file_;
-};
-
-Problem unreadable(const std::string& name, int error) {
-  if (stop_requested()) {
-    return stopped();
-  }
-  return bad_input(name + ": " + std::strerror(error) + "; expected a CSV file of measured points");
-}
-
-Problem read_text(const std::string& path, const std::string& name, std::string& text) {
-  const InputFile file(path);
-  if (!file.is_open()) {
-    return unreadable(name, errno);
-  }
-  text.resize(kMaxFileSize + 1);
-  std::size_t size = 0;
-  ssize_t count = 1;
-  while (count > 0 && size < text.size()) {
-    count = file.read_some(&text[size], text.size() - size);
-    size += count > 0 ? static_cast<std::size_t>(count) : 0;
-  }
-  if (count < 0) {
-    return unreadable(name, errno);
-  }
-  text.resize(size);
-  if (size > kMaxFileSize) {
-    return bad_input(name + ": larger than 1 MiB; expected a table of at most 64 points");
-  }
-  return {};
-}
 
 Problem describe(const std::string& name, const app::PointsError& error) {
   if (error.problem == nullptr) {
@@ -128,14 +61,11 @@ Problem take_common(const std::string& name, const app::PointsReader& reader,
 
 }  // namespace
 
-std::string name_of_points(const std::string& path) {
-  return path == "-" ? "standard input" : printable(path);
-}
-
 Problem read_points(const std::string& path, double reference_percent, FrequencyResponse& points) {
-  const std::string name = name_of_points(path);
+  const std::string name = name_of_input(path);
   std::string text;
-  if (Problem problem = read_text(path, name, text)) {
+  if (Problem problem = read_text_file(path, kMaxFileSize,
+                                       "expected a CSV file of at most 64 measured points", text)) {
     return problem;
   }
   if (text.empty()) {

@@ -9,9 +9,6 @@
 
 namespace emax::host {
 
-/// @returns The file's name for people: "standard input" for "-".
-std::string name_of_points(const std::string& path);
-
 /// Reads the points of a CSV file (`app::PointsReader`) of at most 1 MiB.
 ///
 /// @param[in]  path              "-" for standard input.

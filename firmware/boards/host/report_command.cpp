@@ -21,6 +21,7 @@
 #include "output_files.hpp"
 #include "points_file.hpp"
 #include "stop_request.hpp"
+#include "text_file.hpp"
 
 namespace emax::host {
 
@@ -58,7 +59,7 @@ std::string culprit(const app::Failure& failure, const ReportOptions& options) {
   if (options.measures()) {
     return "measurement";
   }
-  return options.points_path.empty() ? "--model" : name_of_points(options.points_path);
+  return options.points_path.empty() ? "--model" : name_of_input(options.points_path);
 }
 
 Problem describe(const app::Evaluation& evaluation, const ReportOptions& options) {
@@ -253,7 +254,7 @@ Problem run_report(Span<const std::string_view> arguments) {
     const bool keeps = problem.status == ExitStatus::kFault && bench.has_measured();
     return keeps ? keep_and_report(problem, bench, evaluation, options.json, files) : problem;
   }
-  const std::string points_name = name_of_points(options.points_path);
+  const std::string points_name = name_of_input(options.points_path);
   const app::Measurement measurement = bench.measurement();
   const Results results = {evaluation, options.points_path.empty() ? nullptr : points_name.c_str(),
                            options.measures() ? &measurement : nullptr};

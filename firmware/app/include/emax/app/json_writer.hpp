@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "emax/app/text_writer.hpp"
+#include "emax/app/utf8.hpp"
 
 namespace emax::app {
 
@@ -55,9 +56,25 @@ class JsonWriter {
     out_.text("null");
   }
 
+  void boolean(const char* name, bool value) noexcept {
+    begin(name);
+    out_.text(value ? "true" : "false");
+  }
+
   void words(const char* name, const char* value) noexcept {
     begin(name);
     escaped(value);
+  }
+
+  /// UTF-8 as the characters that it says; U+FFFD for what is not valid.
+  void quote(const char* name, const char* value) noexcept {
+    begin(name);
+    write('"');
+    for (Character next = first_character(value); next.length > 0; next = first_character(value)) {
+      write_character(next.code);
+      value += next.length;
+    }
+    write('"');
   }
 
   void pair(const char* name, double first, double second) noexcept {
@@ -88,23 +105,36 @@ class JsonWriter {
     }
   }
 
+  /// One character per byte: a name need not be UTF-8, JSON must be.
   void escaped(const char* value) noexcept {
-    constexpr char kHex[] = "0123456789abcdef";
     write('"');
     for (; *value != '\0'; ++value) {
-      const auto byte = static_cast<unsigned char>(*value);
-      if (byte == '"' || byte == '\\') {
-        write('\\');
-        write(*value);
-      } else if (byte < 0x20 || byte >= 0x7F) {
-        // One character per byte: a name need not be UTF-8, JSON must be.
-        const char escape[] = {'\\', 'u', '0', '0', kHex[byte >> 4U], kHex[byte & 0xFU]};
-        out_.text(Span<const char>(escape));
-      } else {
-        write(*value);
-      }
+      write_character(static_cast<unsigned char>(*value));
     }
     write('"');
+  }
+
+  void write_character(std::uint32_t code) noexcept {
+    if (code >= 0x20 && code < 0x7F) {
+      out_.text(code == '"' || code == '\\' ? "\\" : "");
+      write(static_cast<char>(code));
+    } else if (code < 0x10000) {
+      write_unit(code);
+    } else {
+      write_unit(0xD800U + ((code - 0x10000U) >> 10U));
+      write_unit(0xDC00U + (code & 0x3FFU));
+    }
+  }
+
+  void write_unit(std::uint32_t unit) noexcept {
+    constexpr char kHex[] = "0123456789abcdef";
+    const char escape[] = {'\\',
+                           'u',
+                           kHex[(unit >> 12U) & 0xFU],
+                           kHex[(unit >> 8U) & 0xFU],
+                           kHex[(unit >> 4U) & 0xFU],
+                           kHex[unit & 0xFU]};
+    out_.text(Span<const char>(escape));
   }
 
   TextWriter& out_;

@@ -1,0 +1,89 @@
+"""What the tests of the program share: runs of it in an empty directory, and what they must do when it refuses.
+
+usage: test_NAME.py PROGRAM DATA_DIRECTORY [unittest arguments]
+"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+
+MODEL = ["--model", "1.037,4073,0.3182,0.003,6,0.0004"]
+QUICK = ["--trials", "1000", "--trend", "none"]
+
+
+def restore_signals() -> None:
+    """Whoever runs the tests in the background may have SIGINT ignored, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test runs in an empty directory of its own."""
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = pathlib.Path(directory.name)
+
+    def run_program(self, *arguments, **options) -> subprocess.CompletedProcess:
+        settings = {"stdin": subprocess.DEVNULL} if "input" not in options else {}
+        settings |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 100, "cwd": self.directory}
+        return subprocess.run([PROGRAM, *map(str, arguments)], check=False, **(settings | options))
+
+    def start_program(self, *arguments, **options) -> subprocess.Popen:
+        settings = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        settings |= {"cwd": self.directory, "preexec_fn": restore_signals}
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], **(settings | options))
+        self.addCleanup(process.kill)
+        return process
+
+    def succeed(self, *arguments, **options) -> str:
+        result = self.run_program(*arguments, **options)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        return result.stdout.decode("ascii")
+
+    def json_of(self, *arguments):
+        return json.loads(self.succeed("report", *arguments, "--json"))
+
+    def files(self) -> list[str]:
+        return sorted(str(path.relative_to(self.directory)) for path in self.directory.rglob("*"))
+
+    def write(self, lines, name="points.csv", end="\n") -> str:
+        content = lines if isinstance(lines, bytes) else "".join(line + end for line in lines).encode()
+        (self.directory / name).write_bytes(content)
+        return name
+
+    def assert_one_line(self, text: bytes, *words: str) -> str:
+        line = text.decode()
+        self.assertRegex(line, r"\Aemax: [ -~]+\n\Z", "exactly one printable line")
+        for word in words:
+            self.assertIn(word, line)
+        return line
+
+    def refuse(self, arguments, *words, status=2, **options) -> str:
+        """The program must refuse in one line that has these words, and must leave nothing behind."""
+        before = self.files()
+        result = self.run_program(*arguments, **options)
+        self.assertEqual((result.returncode, result.stdout or b""), (status, b""), result.stderr)
+        self.assertEqual(self.files(), before)
+        return self.assert_one_line(result.stderr, *words)
+
+    def refuse_option(self, option, value, *words, device=MODEL):
+        arguments = [*device, option] + ([] if value is None else [value])
+        return self.refuse(["report", *arguments, "--out", "out"], f"emax: {option}: ", *words)
+
+    def refuse_points(self, lines, where, *words, end="\n"):
+        """`where` is a line number, or None for the table as a whole."""
+        name = self.write(lines, end=end)
+        place = f"emax: {name}: " if where is None else f"emax: {name}:{where}: "
+        return self.refuse(["report", "--points", name, "--out", "out"], place, *words)
+
+
+def main() -> None:
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
