@@ -2,92 +2,106 @@
 #include "emax/fixed_point.hpp"
 
 namespace emax {
-namespace {
 
-void copy(Span<const std::int8_t> from, Span<std::int8_t> to) noexcept {
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    to[i] = from[i];
-  }
-}
-
-/// x <- sgn(y + c x). @returns Whether any sign changed.
-bool take_signs(Span<const double> product, double shift, Span<std::int8_t> signs) noexcept {
+bool take_signs(Span<const double> product, double shift, Signs signs) noexcept {
   bool changed = false;
   for (std::size_t i = 0; i < signs.size(); ++i) {
+    const bool before = signs.is_positive(i);
     const double value = product[i] + shift * signs[i];
-    const std::int8_t sign =
-        value > 0.0 ? std::int8_t{1} : (value < 0.0 ? std::int8_t{-1} : signs[i]);
-    changed = changed || sign != signs[i];
-    signs[i] = sign;
+    const bool positive = value > 0.0 || (!(value < 0.0) && before);
+    if (positive != before) {
+      signs.turn(i);
+      changed = true;
+    }
   }
   return changed;
 }
 
-}  // namespace
-
-double dot(Span<const std::int8_t> signs, Span<const double> product) noexcept {
+double dot(Signs signs, Span<const double> product) noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    sum += signs[i] > 0 ? product[i] : -product[i];
+    sum += signs.is_positive(i) ? product[i] : -product[i];
   }
   return sum;
 }
 
-template <typename Phi>
-FixedPointResult run_fixed_point(const Phi& phi, std::size_t max_iterations, double shift,
-                                 Span<std::int8_t> signs, Span<std::int8_t> best,
-                                 Span<double> product, Span<double> trace) noexcept {
-  FixedPointResult result;
-  phi.multiply(signs, product);
-  result.energy = dot(signs, product);
-  copy(signs, best);
-  if (!trace.empty()) {
-    trace[0] = result.energy;
+void FixedPoint::start(std::size_t max_iterations, double shift) noexcept {
+  result_ = {};
+  max_iterations_ = max_iterations;
+  shift_ = shift;
+  begun_ = false;
+  done_ = false;
+}
+
+void FixedPoint::take_energy(Signs signs, Signs best, Span<const double> product,
+                             Span<double> trace) noexcept {
+  const double energy = dot(signs, product);
+  if (result_.iterations < trace.size()) {
+    trace[result_.iterations] = energy;
   }
-  while (result.iterations < max_iterations) {
-    if (!take_signs(product, shift, signs)) {
-      result.at_rest = true;
-      break;
-    }
-    ++result.iterations;
-    phi.multiply(signs, product);
-    const double energy = dot(signs, product);
-    if (result.iterations < trace.size()) {
-      trace[result.iterations] = energy;
-    }
-    if (energy > result.energy) {
-      result.energy = energy;
-      result.best = result.iterations;
-      copy(signs, best);
-    }
+  if (!begun_ || energy > result_.energy) {
+    result_.energy = energy;
+    result_.best = result_.iterations;
+    best.copy(signs);
   }
-  if (result.best != result.iterations) {
-    copy(best, signs);
-    phi.multiply(signs, product);
-  }
-  return result;
+  begun_ = true;
 }
 
 template <typename Phi>
-void signs_of_column(const Phi& phi, std::size_t cell, Span<std::int8_t> signs,
-                     Span<double> product) noexcept {
+void FixedPoint::step(const Phi& phi, Signs signs, Signs best, Span<double> product,
+                      Span<double> trace) noexcept {
+  if (!begun_) {
+    phi.multiply(signs, product);
+    take_energy(signs, best, product, trace);
+    return;
+  }
+  if (result_.iterations < max_iterations_) {
+    if (take_signs(product, shift_, signs)) {
+      ++result_.iterations;
+      phi.multiply(signs, product);
+      take_energy(signs, best, product, trace);
+      return;
+    }
+    result_.at_rest = true;
+  }
+  if (result_.best != result_.iterations) {
+    signs.copy(best);
+    phi.multiply(signs, product);
+  }
+  done_ = true;
+}
+
+template <typename Phi>
+FixedPointResult run_fixed_point(const Phi& phi, std::size_t max_iterations, double shift,
+                                 Signs signs, Signs best, Span<double> product,
+                                 Span<double> trace) noexcept {
+  FixedPoint run;
+  run.start(max_iterations, shift);
+  while (!run.done()) {
+    run.step(phi, signs, best, product, trace);
+  }
+  return run.result();
+}
+
+template <typename Phi>
+void signs_of_column(const Phi& phi, std::size_t cell, Signs signs, Span<double> product) noexcept {
   for (std::size_t i = 0; i < signs.size(); ++i) {
     product[i] = 0.0;
   }
   phi.add_column(cell, 1.0, product);
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    signs[i] = product[i] < 0.0 ? std::int8_t{-1} : std::int8_t{1};
+    signs.set(i, !(product[i] < 0.0));
   }
 }
 
-template FixedPointResult run_fixed_point(const PhiMatrix&, std::size_t, double, Span<std::int8_t>,
-                                          Span<std::int8_t>, Span<double>, Span<double>) noexcept;
-template FixedPointResult run_fixed_point(const PhiOperator&, std::size_t, double,
-                                          Span<std::int8_t>, Span<std::int8_t>, Span<double>,
-                                          Span<double>) noexcept;
-template void signs_of_column(const PhiMatrix&, std::size_t, Span<std::int8_t>,
-                              Span<double>) noexcept;
-template void signs_of_column(const PhiOperator&, std::size_t, Span<std::int8_t>,
-                              Span<double>) noexcept;
+template void FixedPoint::step(const PhiMatrix&, Signs, Signs, Span<double>, Span<double>) noexcept;
+template void FixedPoint::step(const PhiOperator&, Signs, Signs, Span<double>,
+                               Span<double>) noexcept;
+template FixedPointResult run_fixed_point(const PhiMatrix&, std::size_t, double, Signs, Signs,
+                                          Span<double>, Span<double>) noexcept;
+template FixedPointResult run_fixed_point(const PhiOperator&, std::size_t, double, Signs, Signs,
+                                          Span<double>, Span<double>) noexcept;
+template void signs_of_column(const PhiMatrix&, std::size_t, Signs, Span<double>) noexcept;
+template void signs_of_column(const PhiOperator&, std::size_t, Signs, Span<double>) noexcept;
 
 }  // namespace emax

@@ -3,81 +3,18 @@
 
 #include "emax/complex_exp.hpp"
 #include "emax/elementary.hpp"
-#include "emax/units.hpp"
+#include "emax/response_scan.hpp"
 
 namespace emax {
 namespace {
 
-constexpr std::uint32_t kMaxSamples = 1u << 20;
-constexpr double kSamplesPerPeriod = 64.0;
-
-/// Re sum residue * pole^power * e^(pole t), with power 0 or 1.
-double response(Span<const Mode> modes, int power, double time_s) noexcept {
+/// Re sum residue * e^(pole t).
+double response(Span<const Mode> modes, double time_s) noexcept {
   double sum = 0.0;
   for (const Mode& mode : modes) {
-    const Complex factor = power == 0 ? mode.residue : mode.residue * mode.pole;
-    sum += real_of_product(factor, exp(time_s * mode.pole));
+    sum += real_of_product(mode.residue, exp(time_s * mode.pole));
   }
   return sum;
-}
-
-/// An upper bound of |k| from this time on.
-double envelope(Span<const Mode> modes, double time_s) noexcept {
-  double sum = 0.0;
-  for (const Mode& mode : modes) {
-    sum += sqrt(norm(mode.residue)) * exp(time_s * mode.pole.re);
-  }
-  return sum;
-}
-
-double sample_step_s(Span<const Mode> modes) noexcept {
-  double fastest = 0.0;
-  for (const Mode& mode : modes) {
-    const double rate = norm(mode.pole);
-    fastest = rate > fastest ? rate : fastest;
-  }
-  return kTwoPi / (kSamplesPerPeriod * sqrt(fastest));
-}
-
-/// Where a function of time with opposite signs at both ends is zero: bisection down to
-/// neighbouring doubles.
-template <typename Function>
-double bisect(double low_s, double high_s, const Function& function) noexcept {
-  const bool positive_at_low = function(low_s) > 0.0;
-  for (int i = 0; i < 80; ++i) {
-    const double middle_s = low_s + 0.5 * (high_s - low_s);
-    if (!(middle_s > low_s && middle_s < high_s)) {
-      break;
-    }
-    if ((function(middle_s) > 0.0) == positive_at_low) {
-      low_s = middle_s;
-    } else {
-      high_s = middle_s;
-    }
-  }
-  return low_s + 0.5 * (high_s - low_s);
-}
-
-/// Samples k and its derivative at equal steps and hands over each interval; ends where the
-/// envelope says that nothing as large as `floor_of()` can follow, or after kMaxSamples.
-///
-/// @returns False if the samples ran out.
-template <typename Floor, typename Visit>
-bool scan(Span<const Mode> modes, const Floor& floor_of, const Visit& visit) noexcept {
-  constexpr std::uint32_t kEnvelopeStride = 16;
-  const double step_s = sample_step_s(modes);
-  double slope = response(modes, 1, 0.0);
-  for (std::uint32_t i = 1; i <= kMaxSamples; ++i) {
-    const double start_s = (i - 1) * step_s;
-    const double end_s = i * step_s;
-    const double next_slope = response(modes, 1, end_s);
-    visit(start_s, end_s, (slope > 0.0) != (next_slope > 0.0));
-    slope = next_slope;
-    if (i % kEnvelopeStride == 0 && envelope(modes, end_s) < floor_of()) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -145,10 +82,8 @@ void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
         weight = j == 0 ? 1.0 : (i == 0 ? 0.0 : -1.0);
       }
       const Complex numerator{weight, 0.0};
-      gramian_[i][j] = numerator / (modes_[i].pole + modes_[j].pole);
-      gramian_[j][i] = gramian_[i][j];
-      conjugate_gramian_[i][j] = numerator / (modes_[i].pole + conj(modes_[j].pole));
-      conjugate_gramian_[j][i] = conj(conjugate_gramian_[i][j]);
+      gramian_[pair(i, j)] = numerator / (modes_[i].pole + modes_[j].pole);
+      conjugate_gramian_[pair(i, j)] = numerator / (modes_[i].pole + conj(modes_[j].pole));
     }
   }
 }
@@ -156,7 +91,7 @@ void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
 Complex ModalModel::gramian_row(std::size_t i, const Complex* output) const noexcept {
   Complex sum;
   for (std::size_t j = 0; j < count_; ++j) {
-    sum = sum + gramian_[i][j] * output[j] + conjugate_gramian_[i][j] * conj(output[j]);
+    sum = sum + gramian(i, j) * output[j] + conjugate_gramian(i, j) * conj(output[j]);
   }
   return 0.5 * sum;
 }
@@ -170,10 +105,10 @@ void ModalModel::fill_sums_over_filter() noexcept {
     filter_settled_[i] = {};
     filter_kernel_[i] = {};
     for (std::size_t j = 1; j < count_; ++j) {
-      filter_settled_[i] = filter_settled_[i] + gramian_[i][j] * settled_[j] +
-                           conjugate_gramian_[i][j] * conj(settled_[j]);
-      filter_kernel_[i] = filter_kernel_[i] + gramian_[i][j] * modes_[j].residue +
-                          conjugate_gramian_[i][j] * conj(modes_[j].residue);
+      filter_settled_[i] = filter_settled_[i] + gramian(i, j) * settled_[j] +
+                           conjugate_gramian(i, j) * conj(settled_[j]);
+      filter_kernel_[i] = filter_kernel_[i] + gramian(i, j) * modes_[j].residue +
+                          conjugate_gramian(i, j) * conj(modes_[j].residue);
     }
   }
 }
@@ -184,15 +119,15 @@ void ModalModel::fill_vectors() noexcept {
   Complex settled[kMaxModes];
   Complex kernel[kMaxModes];
   for (std::size_t i = 1; i < count_; ++i) {
-    settled[i] = filter_settled_[i] + gramian_[i][0] * settled_[0] +
-                 conjugate_gramian_[i][0] * conj(settled_[0]);
-    kernel[i] = filter_kernel_[i] + gramian_[i][0] * modes_[0].residue +
-                conjugate_gramian_[i][0] * conj(modes_[0].residue);
+    settled[i] = filter_settled_[i] + gramian(i, 0) * settled_[0] +
+                 conjugate_gramian(i, 0) * conj(settled_[0]);
+    kernel[i] = filter_kernel_[i] + gramian(i, 0) * modes_[0].residue +
+                conjugate_gramian(i, 0) * conj(modes_[0].residue);
   }
   settled[0] = 2.0 * gramian_row(0, settled_);
   for (std::size_t j = 0; j < count_; ++j) {
-    kernel[0] = kernel[0] + gramian_[0][j] * modes_[j].residue +
-                conjugate_gramian_[0][j] * conj(modes_[j].residue);
+    kernel[0] = kernel[0] + gramian(0, j) * modes_[j].residue +
+                conjugate_gramian(0, j) * conj(modes_[j].residue);
   }
   // What a constant unit input ends up as in the output that a mode is part of: y for the
   // integral-square error, ya or minus yf, each with its own sign, for the energy difference.
@@ -209,15 +144,15 @@ void ModalModel::fill_vectors() noexcept {
 }
 
 double ModalModel::impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : response(modes(), 0, time_s);
+  return time_s < 0.0 ? 0.0 : response(modes(), time_s);
 }
 
 double ModalModel::device_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : response(modes().first(1), 0, time_s);
+  return time_s < 0.0 ? 0.0 : response(modes().first(1), time_s);
 }
 
 double ModalModel::filter_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : -response(modes().from(1), 0, time_s);
+  return time_s < 0.0 ? 0.0 : -response(modes().from(1), time_s);
 }
 
 double ModalModel::step_response(double time_s) const noexcept {
@@ -232,46 +167,21 @@ double ModalModel::step_response(double time_s) const noexcept {
 }
 
 Peak ModalModel::peak() const noexcept {
-  Peak best{impulse_response(0.0), 0.0};
-  const auto consider = [&](double time_s) {
-    const double value = impulse_response(time_s);
-    if (abs(value) > abs(best.value)) {
-      best = {value, time_s};
-    }
-  };
-  scan(
-      modes(), [&] { return abs(best.value); },
-      [&](double start_s, double end_s, bool turns) {
-        consider(turns ? bisect(start_s, end_s, [&](double t) { return response(modes(), 1, t); })
-                       : end_s);
-      });
-  return best;
+  PeakSearch search;
+  search.start(*this);
+  while (!search.done()) {
+    search.step(*this);
+  }
+  return search.result();
 }
 
 SettlingTime ModalModel::settling_time(double fraction) const noexcept {
-  const double limit = fraction * abs(peak().value);
-  const auto above = [&](double t) { return abs(impulse_response(t)) - limit; };
-  SettlingTime result;
-  const auto look = [&](double from_s, double to_s) {
-    if (above(to_s) > 0.0) {
-      result.time_s = to_s;
-    } else if (above(from_s) > 0.0) {
-      result.time_s = bisect(from_s, to_s, above);
-    }
-  };
-  result.found = scan(
-      modes(), [&] { return limit; },
-      [&](double start_s, double end_s, bool turns) {
-        if (!turns) {
-          look(start_s, end_s);
-          return;
-        }
-        const double extremum_s =
-            bisect(start_s, end_s, [&](double t) { return response(modes(), 1, t); });
-        look(start_s, extremum_s);
-        look(extremum_s, end_s);
-      });
-  return result;
+  SettlingSearch search;
+  search.start(*this, fraction * abs(peak().value));
+  while (!search.done()) {
+    search.step(*this);
+  }
+  return search.result();
 }
 
 }  // namespace emax

@@ -35,7 +35,7 @@ double PhiMatrix::diagonal_limit() const noexcept {
   return limit;
 }
 
-void PhiMatrix::multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept {
+void PhiMatrix::multiply(Signs signs, Span<double> product) const noexcept {
   for (std::size_t i = 0; i < cells_; ++i) {
     product[i] = 0.0;
   }

@@ -19,6 +19,7 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   if (cells > kMaxCells) {
     return Status::kTooManyCells;
   }
+  model_ = &model;
   cells_ = cells;
   duration_s_ = duration_s;
   count_ = model.modes().size();
@@ -26,10 +27,6 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   const double h = duration_s / static_cast<double>(cells);
   for (std::size_t m = 0; m < count_; ++m) {
     const Mode mode = model.modes()[m];
-    for (std::size_t n = 0; n < count_; ++n) {
-      gramian_[m][n] = model.gramian(m, n);
-      conjugate_gramian_[m][n] = model.conjugate_gramian(m, n);
-    }
     const Complex z = h * mode.pole;
     const Complex width = h * phi1(z);
     pole_h_[m] = z;
@@ -73,17 +70,9 @@ void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
   }
 }
 
-Complex PhiOperator::held_after_end(std::size_t mode, const Complex* state) const noexcept {
-  Complex sum;
-  for (std::size_t n = 0; n < count_; ++n) {
-    sum = sum + gramian_[mode][n] * state[n] + conjugate_gramian_[mode][n] * conj(state[n]);
-  }
-  return 0.5 * sum;
-}
-
 // All modes at each cell: their recursions are independent, so a processor runs them side by side.
-template <typename Value>
-void PhiOperator::apply(Span<const Value> signal, Span<double> product) const noexcept {
+template <typename Signal>
+void PhiOperator::apply(Signal signal, Span<double> product) const noexcept {
   Complex state[kMaxModes];
   for (std::size_t i = 0; i < cells_; ++i) {
     const double value = signal[i];
@@ -103,7 +92,7 @@ void PhiOperator::apply(Span<const Value> signal, Span<double> product) const no
   // what is missing because the record ends at T.
   Complex back[kMaxModes];
   for (std::size_t m = 0; m < count_; ++m) {
-    back[m] = end_[m] * held_after_end(m, at_end);
+    back[m] = end_[m] * model_->gramian_row(m, at_end);
   }
   for (std::size_t i = cells_; i-- > 0;) {
     const double value = signal[i];
@@ -116,7 +105,7 @@ void PhiOperator::apply(Span<const Value> signal, Span<double> product) const no
   }
 }
 
-void PhiOperator::multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept {
+void PhiOperator::multiply(Signs signs, Span<double> product) const noexcept {
   apply(signs, product);
 }
 
@@ -143,7 +132,7 @@ void PhiOperator::add_column(std::size_t cell, double scale, Span<double> produc
   }
   Complex back[kMaxModes];
   for (std::size_t m = 0; m < count_; ++m) {
-    back[m] = end_[m] * held_after_end(m, at_end);
+    back[m] = end_[m] * model_->gramian_row(m, at_end);
   }
   for (std::size_t i = cells_; i-- > 0;) {
     double sum = 0.0;
@@ -171,7 +160,7 @@ double PhiOperator::pulse(std::size_t cell, std::size_t width) const noexcept {
   }
   double energy = endless_pulse_[width - 1];
   for (std::size_t m = 0; m < count_; ++m) {
-    energy += real_of_product(at_end[m], held_after_end(m, at_end));
+    energy += real_of_product(at_end[m], model_->gramian_row(m, at_end));
   }
   return energy;
 }

@@ -30,10 +30,10 @@ Status SwitchingSignal::set(Span<const double> times_s, double duration_s) noexc
   return Status::kOk;
 }
 
-Status SwitchingSignal::set_signs(Span<const std::int8_t> signs, double duration_s) noexcept {
+Status SwitchingSignal::set_signs(Signs signs, double duration_s) noexcept {
   std::size_t changes = 0;
   for (std::size_t i = 1; i < signs.size(); ++i) {
-    changes += signs[i] != signs[i - 1] ? 1u : 0u;
+    changes += signs.is_positive(i) != signs.is_positive(i - 1) ? 1u : 0u;
   }
   if (changes > kMaxSwitches) {
     return Status::kTooManySwitches;
@@ -42,7 +42,7 @@ Status SwitchingSignal::set_signs(Span<const std::int8_t> signs, double duration
   duration_s_ = duration_s;
   const double cells = static_cast<double>(signs.size());
   for (std::size_t i = 1; i < signs.size(); ++i) {
-    if (signs[i] != signs[i - 1]) {
+    if (signs.is_positive(i) != signs.is_positive(i - 1)) {
       times_s_[count_++] = duration_s * static_cast<double>(i) / cells;
     }
   }
@@ -69,14 +69,18 @@ double SwitchingSignal::value(double time_s) const noexcept {
 // switch, half of that at T, F(r z) at T, and the settled power times T, with J_i = r_i
 // gramian_row(i, r/p) + D r_i/p_i of the model alone.
 double energy(const ModalModel& model, const SwitchingSignal& signal) noexcept {
+  return energy(model, signal.times_s(), signal.duration_s());
+}
+
+double energy(const ModalModel& model, Span<const double> times_s, double duration_s) noexcept {
   const std::size_t count = model.modes().size();
   Complex state[kMaxModes];  // z
-  double sum = model.static_power() * signal.duration_s();
+  double sum = model.static_power() * duration_s;
   double sign = 1.0;
   double last_s = 0.0;
-  for (std::size_t k = 0; k <= signal.count(); ++k) {
-    const bool at_end = k == signal.count();
-    const double time_s = at_end ? signal.duration_s() : signal.times_s()[k];
+  for (std::size_t k = 0; k <= times_s.size(); ++k) {
+    const bool at_end = k == times_s.size();
+    const double time_s = at_end ? duration_s : times_s[k];
     double weighted = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       const Complex shift = sign * model.inverse_pole(i);

@@ -8,6 +8,7 @@
 #include "emax/switching_signal.hpp"
 
 #include "support/paper_device.hpp"
+#include "support/sign_pattern.hpp"
 
 namespace emax {
 namespace {
@@ -20,22 +21,21 @@ constexpr Criterion kDifference = Criterion::kEnergyDifference;
 
 /// Memory for a run on any number of cells.
 struct GridRun {
-  explicit GridRun(std::size_t cells) : signs(cells, 1), best(cells), product(cells), trace(64) {}
+  explicit GridRun(std::size_t cells) : signs(cells), best(cells), product(cells), trace(64) {}
 
   template <typename Phi>
   FixedPointResult from_first_column(const Phi& phi, std::size_t iterations) {
-    signs_of_column(phi, 0, span(signs), span(product));
+    signs_of_column(phi, 0, signs.view(), span(product));
     return go(phi, iterations, 0.0);
   }
   template <typename Phi>
   FixedPointResult go(const Phi& phi, std::size_t iterations, double shift) {
-    return run_fixed_point(phi, iterations, shift, span(signs), span(best), span(product),
+    return run_fixed_point(phi, iterations, shift, signs.view(), best.view(), span(product),
                            span(trace));
   }
   std::vector<double> switch_times_s(double duration_s) const {
     SwitchingSignal signal{};
-    EXPECT_EQ(signal.set_signs(Span<const std::int8_t>(signs.data(), signs.size()), duration_s),
-              Status::kOk);
+    EXPECT_EQ(signal.set_signs(signs.view(), duration_s), Status::kOk);
     return {signal.times_s().begin(), signal.times_s().end()};
   }
   template <typename T>
@@ -43,15 +43,16 @@ struct GridRun {
     return Span<T>(values.data(), values.size());
   }
 
-  std::vector<std::int8_t> signs;
-  std::vector<std::int8_t> best;
+  test::SignPattern signs;
+  test::SignPattern best;
   std::vector<double> product;
   std::vector<double> trace;
 };
 
 TEST(FixedPoint, RunOfThePaperAtTwoMilliseconds) {
+  const ModalModel model = paper_model();
   PhiOperator phi{};
-  ASSERT_EQ(phi.set(paper_model(), 2e-3, 1000), Status::kOk);
+  ASSERT_EQ(phi.set(model, 2e-3, 1000), Status::kOk);
   GridRun run(1000);
   const FixedPointResult result = run.from_first_column(phi, 30);
   // Twelve digits are given.
@@ -69,8 +70,9 @@ TEST(FixedPoint, RunOfThePaperAtTwoMilliseconds) {
 }
 
 TEST(FixedPoint, RunOfThePaperAtTenMilliseconds) {
+  const ModalModel model = paper_model();
   PhiOperator phi{};
-  ASSERT_EQ(phi.set(paper_model(), 10e-3, 5000), Status::kOk);
+  ASSERT_EQ(phi.set(model, 10e-3, 5000), Status::kOk);
   GridRun run(5000);
   const FixedPointResult result = run.from_first_column(phi, 30);
   EXPECT_EQ(result.iterations, 30u);
@@ -97,9 +99,7 @@ TEST(FixedPoint, NeverLosesEnergyWhereTheoryPromisesIt) {
     const double shift = ascent_shift(model, 2e-3 / kCells);
     for (int start = 0; start < 200; ++start) {
       GridRun run(kCells);
-      for (std::int8_t& sign : run.signs) {
-        sign = random() % 2 == 0 ? 1 : -1;
-      }
+      run.signs = test::random_signs(kCells, random);
       const FixedPointResult result = run.go(phi.matrix(), 60, shift);
       for (std::size_t i = 1; i <= result.iterations && i < run.trace.size(); ++i) {
         EXPECT_GE(run.trace[i], run.trace[i - 1] - 1e-17);
@@ -122,9 +122,7 @@ TEST(FixedPoint, KeepsTheBestIterateWhereThePlainIterationFalls) {
   int falls = 0;
   for (int start = 0; start < 200; ++start) {
     GridRun run(kCells);
-    for (std::int8_t& sign : run.signs) {
-      sign = random() % 2 == 0 ? 1 : -1;
-    }
+    run.signs = test::random_signs(kCells, random);
     const FixedPointResult result = run.go(phi.matrix(), 60, 0.0);
     double largest = run.trace[0];
     bool fell = false;
@@ -135,9 +133,8 @@ TEST(FixedPoint, KeepsTheBestIterateWhereThePlainIterationFalls) {
     falls += fell ? 1 : 0;
     EXPECT_EQ(result.energy, largest);
     EXPECT_EQ(result.energy, run.trace[result.best]);
-    EXPECT_NEAR(dot(Span<const std::int8_t>(run.signs.data(), kCells),
-                    Span<const double>(run.product.data(), kCells)),
-                largest, 1e-17);
+    EXPECT_NEAR(dot(run.signs.view(), Span<const double>(run.product.data(), kCells)), largest,
+                1e-17);
   }
   EXPECT_GT(falls, 0);
 }
@@ -147,11 +144,13 @@ TEST(FixedPoint, AZeroKeepsItsSign) {
   const double zeros[packed_size(3)] = {};
   const PhiMatrix phi(zeros, 3);
   GridRun run(3);
-  run.signs = {1, -1, 1};
+  run.signs = test::SignPattern({1, -1, 1});
   const FixedPointResult result = run.go(phi, 5, 0.0);
   EXPECT_TRUE(result.at_rest);
   EXPECT_EQ(result.iterations, 0u);
-  EXPECT_EQ(run.signs, (std::vector<std::int8_t>{1, -1, 1}));
+  EXPECT_TRUE(run.signs.view().is_positive(0));
+  EXPECT_FALSE(run.signs.view().is_positive(1));
+  EXPECT_TRUE(run.signs.view().is_positive(2));
 }
 
 }  // namespace

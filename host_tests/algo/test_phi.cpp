@@ -12,6 +12,7 @@
 
 #include "support/paper_device.hpp"
 #include "support/rounding.hpp"
+#include "support/sign_pattern.hpp"
 
 namespace emax {
 namespace {
@@ -23,20 +24,12 @@ using test::paper_model;
 constexpr Criterion kIse = Criterion::kIntegralSquareError;
 constexpr Criterion kDifference = Criterion::kEnergyDifference;
 
-std::vector<std::int8_t> random_signs(std::size_t cells, std::mt19937_64& random) {
-  std::vector<std::int8_t> signs(cells);
-  for (std::int8_t& sign : signs) {
-    sign = random() % 2 == 0 ? 1 : -1;
-  }
-  return signs;
-}
-
 template <typename T>
 Span<T> span_of(std::vector<T>& values) {
   return Span<T>(values.data(), values.size());
 }
 
-double quadratic_form(const PhiMatrix& phi, const std::vector<std::int8_t>& signs) {
+double quadratic_form(const PhiMatrix& phi, Signs signs) {
   double sum = 0.0;
   for (std::size_t i = 0; i < signs.size(); ++i) {
     for (std::size_t j = 0; j < signs.size(); ++j) {
@@ -78,13 +71,11 @@ TEST_P(PhiCase, QuadraticFormIsTheExactEnergyOfTheSignal) {
   // The energy has another derivation: states at the switches, no cells.
   std::mt19937_64 random(1);
   for (int run = 0; run < 50; ++run) {
-    const std::vector<std::int8_t> signs = random_signs(kCells, random);
+    const test::SignPattern signs = test::random_signs(kCells, random);
     SwitchingSignal signal{};
-    ASSERT_EQ(signal.set_signs(Span<const std::int8_t>(signs.data(), signs.size()),
-                               GetParam().duration_s),
-              Status::kOk);
+    ASSERT_EQ(signal.set_signs(signs.view(), GetParam().duration_s), Status::kOk);
     // kCells^2 terms of up to the size of the diagonal, rounded at random.
-    EXPECT_NEAR(quadratic_form(buffer_.matrix(), signs), energy(model_, signal),
+    EXPECT_NEAR(quadratic_form(buffer_.matrix(), signs.view()), energy(model_, signal),
                 1e-14 * scale_ * kCells + test::rounding_of(model_));
   }
 }
@@ -102,16 +93,16 @@ TEST_P(PhiCase, OperatorAndMatrixAreTheSame) {
     EXPECT_NEAR(operator_.diagonal(j), buffer_.matrix().diagonal(j), tolerance);
   }
   std::mt19937_64 random(2);
-  const std::vector<std::int8_t> signs = random_signs(kCells, random);
+  const test::SignPattern signs = test::random_signs(kCells, random);
   std::vector<double> by_matrix(kCells);
   std::vector<double> by_operator(kCells);
-  const Span<const std::int8_t> pattern(signs.data(), signs.size());
+  const Signs pattern = signs.view();
   buffer_.matrix().multiply(pattern, span_of(by_matrix));
   operator_.multiply(pattern, span_of(by_operator));
   for (std::size_t i = 0; i < kCells; ++i) {
     double sum = 0.0;
     for (std::size_t j = 0; j < kCells; ++j) {
-      sum += buffer_.matrix().at(i, j) * signs[j];
+      sum += buffer_.matrix().at(i, j) * pattern[j];
     }
     EXPECT_NEAR(by_matrix[i], sum, kCells * tolerance);
     EXPECT_NEAR(by_operator[i], sum, kCells * tolerance);
@@ -253,9 +244,10 @@ TEST(PhiBuffer, RefusesWhatItCannotHoldAndStaysAsItWas) {
   EXPECT_EQ(phi.fill(paper_model(), nan, 8), Status::kInvalidArgument);
   EXPECT_EQ(phi.matrix().cells(), 8u);
   EXPECT_EQ(phi.matrix().at(3, 5), before);
+  const ModalModel model = paper_model();
   PhiOperator apply{};
-  EXPECT_EQ(apply.set(paper_model(), 2e-3, kMaxCells + 1), Status::kTooManyCells);
-  EXPECT_EQ(apply.set(paper_model(), 2e-3, kMaxCells), Status::kOk);
+  EXPECT_EQ(apply.set(model, 2e-3, kMaxCells + 1), Status::kTooManyCells);
+  EXPECT_EQ(apply.set(model, 2e-3, kMaxCells), Status::kOk);
 }
 
 }  // namespace

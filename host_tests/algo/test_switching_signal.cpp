@@ -8,6 +8,7 @@
 
 #include "support/paper_device.hpp"
 #include "support/rounding.hpp"
+#include "support/sign_pattern.hpp"
 
 namespace emax {
 namespace {
@@ -128,9 +129,9 @@ TEST(SwitchingSignal, ValueChangesAtEachSwitch) {
 }
 
 TEST(SwitchingSignal, ReadsAPatternOfSigns) {
-  const std::int8_t signs[] = {-1, -1, 1, 1, 1, -1, 1, -1};
+  const test::SignPattern signs({-1, -1, 1, 1, 1, -1, 1, -1});
   SwitchingSignal signal{};
-  ASSERT_EQ(signal.set_signs(signs, 4e-3), Status::kOk);
+  ASSERT_EQ(signal.set_signs(signs.view(), 4e-3), Status::kOk);
   ASSERT_EQ(signal.count(), 4u);
   EXPECT_DOUBLE_EQ(signal.times_s()[0], 1e-3);
   EXPECT_DOUBLE_EQ(signal.times_s()[1], 2.5e-3);
@@ -157,12 +158,11 @@ TEST(SwitchingSignal, RefusesWhatItCannotHoldAndStaysAsItWas) {
     many[i] = 1e-3 * static_cast<double>(i + 1);
   }
   EXPECT_EQ(set(many, 1.0), Status::kTooManySwitches);
-  std::vector<std::int8_t> signs(kMaxSwitches + 2);
+  test::SignPattern signs(kMaxSwitches + 2);
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    signs[i] = i % 2 == 0 ? 1 : -1;
+    signs.view().set(i, i % 2 == 0);
   }
-  EXPECT_EQ(signal.set_signs(Span<const std::int8_t>(signs.data(), signs.size()), 1.0),
-            Status::kTooManySwitches);
+  EXPECT_EQ(signal.set_signs(signs.view(), 1.0), Status::kTooManySwitches);
   EXPECT_EQ(signal.count(), 1u);
   EXPECT_EQ(signal.times_s()[0], 1e-3);
   EXPECT_EQ(signal.duration_s(), 2e-3);

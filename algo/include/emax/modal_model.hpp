@@ -67,9 +67,11 @@ class ModalModel {
 
   /// c/(p_i + p_j) and c/(p_i + conj p_j), c being 1, or for the energy difference +1 for two
   /// sensor modes, -1 for two filter modes and 0 between them.
-  Complex gramian(std::size_t i, std::size_t j) const noexcept { return gramian_[i][j]; }
+  Complex gramian(std::size_t i, std::size_t j) const noexcept {
+    return i <= j ? gramian_[pair(i, j)] : gramian_[pair(j, i)];
+  }
   Complex conjugate_gramian(std::size_t i, std::size_t j) const noexcept {
-    return conjugate_gramian_[i][j];
+    return i < j ? conjugate_gramian_[pair(i, j)] : conj(conjugate_gramian_[pair(j, i)]);
   }
 
   /// 1/2 sum_j [output_j G_ij + conj(output_j) H_ij], G and H being the two Gramians: what the
@@ -102,13 +104,19 @@ class ModalModel {
   SettlingTime settling_time(double fraction) const noexcept;
 
  private:
+  static constexpr std::size_t kPairs = kMaxModes * (kMaxModes + 1) / 2;
+  /// The place of i <= j among the pairs.
+  static constexpr std::size_t pair(std::size_t i, std::size_t j) noexcept {
+    return j * (j + 1) / 2 + i;
+  }
   void fill_gramians(std::size_t first_row_count) noexcept;
   void fill_sums_over_filter() noexcept;
   void fill_vectors() noexcept;
 
   Mode modes_[kMaxModes] = {};
-  Complex gramian_[kMaxModes][kMaxModes] = {};
-  Complex conjugate_gramian_[kMaxModes][kMaxModes] = {};
+  // Of pairs i <= j: the first is symmetric, the second Hermitian.
+  Complex gramian_[kPairs] = {};
+  Complex conjugate_gramian_[kPairs] = {};
   Complex inverse_pole_[kMaxModes] = {};
   Complex settled_[kMaxModes] = {};  // r / p
   Complex correlation_[kMaxModes] = {};

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <type_traits>
 
 #include "emax/modal_model.hpp"
+#include "emax/signs.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 
@@ -33,7 +33,7 @@ class PhiMatrix {
   double diagonal_limit() const noexcept;
 
   /// product = Phi signs; both have `cells()` elements. cells^2 additions.
-  void multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept;
+  void multiply(Signs signs, Span<double> product) const noexcept;
 
   /// product += scale * (column `cell` of Phi). cells multiplications.
   void add_column(std::size_t cell, double scale, Span<double> product) const noexcept;

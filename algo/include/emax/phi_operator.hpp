@@ -2,16 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <type_traits>
 
+#include "emax/capacity.hpp"
 #include "emax/modal_model.hpp"
+#include "emax/signs.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 
 namespace emax {
-
-inline constexpr std::size_t kMaxCells = 8192;
 
 /// Phi of paper equation (5) for signals that are constant on each of N equal cells of [0, T]:
 /// E = x' Phi x, exact for such signals (no sampling of y).
@@ -19,24 +18,27 @@ inline constexpr std::size_t kMaxCells = 8192;
 /// Phi is a Toeplitz matrix (what an endless record would give) minus what the output still holds
 /// after T, a form of the modes' states at T. Both are sums over modes of decaying exponentials of
 /// the distance between cells, so one forward and one backward recursion apply Phi to a signal.
-/// About 3.6 KiB, whatever the number of cells. Errors are of the order of rounding relative to the
-/// endless record's energy.
+/// 0.8 KiB, whatever the number of cells, as it refers to the model; so it is made anew where it is
+/// needed, which costs less than a product with 20 cells. Errors are of the order of rounding
+/// relative to the endless record's energy.
 class PhiOperator {
  public:
   /// Prepares for `cells` cells on [0, `duration_s`].
   ///
+  /// @param[in] model Outlives the use of this object and stays as it is meanwhile.
   /// @returns
   /// * kOk: Ready.
   /// * kInvalidArgument: Duration not above 0 or not finite, or no cell.
   /// * kTooManyCells: More than kMaxCells.
   Status set(const ModalModel& model, double duration_s, std::size_t cells) noexcept;
+  Status set(ModalModel&& model, double duration_s, std::size_t cells) = delete;
 
   std::size_t cells() const noexcept { return cells_; }
   double duration_s() const noexcept { return duration_s_; }
 
-  /// product = Phi signs. `signs` holds +1, -1 (or 0); both have `cells()` elements.
+  /// product = Phi signs; both have `cells()` elements.
   /// Two complex products and two complex sums per mode, cell and direction.
-  void multiply(Span<const std::int8_t> signs, Span<double> product) const noexcept;
+  void multiply(Signs signs, Span<double> product) const noexcept;
 
   /// The same for a signal with any values.
   void multiply(Span<const double> signal, Span<double> product) const noexcept;
@@ -63,17 +65,15 @@ class PhiOperator {
   double diagonal_limit() const noexcept { return diagonal_limit_; }
 
  private:
-  Complex held_after_end(std::size_t mode, const Complex* state) const noexcept;
-  template <typename Value>
-  void apply(Span<const Value> signal, Span<double> product) const noexcept;
+  template <typename Signal>
+  void apply(Signal signal, Span<double> product) const noexcept;
   void fill_pulses(std::size_t modes_of_limit) noexcept;
 
+  const ModalModel* model_ = nullptr;
   Complex step_[kMaxModes] = {};         // e^(p h)
   Complex correlation_[kMaxModes] = {};  // the Toeplitz part at distance d >= 1 is Re sum
                                          // correlation step^(d - 1)
   Complex end_[kMaxModes] = {};          // response of the last cell's mode at T
-  Complex gramian_[kMaxModes][kMaxModes] = {};
-  Complex conjugate_gramian_[kMaxModes][kMaxModes] = {};
   Complex pole_h_[kMaxModes] = {};
   double endless_pulse_[kMaxPulse] = {};
   double pulse_limit_[kMaxPulse] = {};

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/capacity.hpp"
 #include "emax/modal_model.hpp"
+#include "emax/signs.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 
 namespace emax {
-
-inline constexpr std::size_t kMaxSwitches = 256;
 
 /// x(t) of unit size on [0, T] that starts at +1 and changes sign at each switching time.
 ///
@@ -27,11 +27,17 @@ class SwitchingSignal {
   /// * kTooManySwitches: More than kMaxSwitches times.
   Status set(Span<const double> times_s, double duration_s) noexcept;
 
-  /// Takes the pattern of signs (+1 or -1) of equal cells that fill [0, `duration_s`]; a pattern
+  /// No switches, and a duration of 0.
+  void clear() noexcept {
+    count_ = 0;
+    duration_s_ = 0.0;
+  }
+
+  /// Takes the pattern of signs of equal cells that fill [0, `duration_s`]; a pattern
   /// that starts negative is taken with all signs turned.
   ///
   /// @returns kOk, or kTooManySwitches and nothing has changed.
-  Status set_signs(Span<const std::int8_t> signs, double duration_s) noexcept;
+  Status set_signs(Signs signs, double duration_s) noexcept;
 
   Span<const double> times_s() const noexcept { return Span<const double>(times_s_, count_); }
   std::size_t count() const noexcept { return count_; }
@@ -55,6 +61,9 @@ static_assert(std::is_trivially_copyable_v<SwitchingSignal>);
 /// outputs. One complex exponential and two complex products per mode and switch, and one product
 /// with the Gramian at the end.
 double energy(const ModalModel& model, const SwitchingSignal& signal) noexcept;
+
+/// The same for switching times that are as those of a signal.
+double energy(const ModalModel& model, Span<const double> times_s, double duration_s) noexcept;
 
 /// The output y(t) for the signal with a = 1, in V/(m/s^2), at one time inside [0, duration]; paper
 /// equation (8).
