@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMaxSamples = 1048576.0;
 constexpr double kSamplesPerPeriod = 64.0;
+constexpr std::uint32_t kSamplesPerStep = 256;
 
 double samples_for(const ModalModel& model, double duration_s) noexcept {
   double fastest = 0.0;
@@ -38,57 +39,48 @@ double zero_between(const ModalModel& model, double low_s, double high_s) noexce
 
 }  // namespace
 
-AbsoluteError largest_absolute_error(const ModalModel& model, double duration_s) noexcept {
-  AbsoluteError result;
+Status AbsoluteError::start(const ModalModel& model, double duration_s) noexcept {
+  *this = AbsoluteError();
   const double samples = samples_for(model, duration_s);
   if (!(duration_s > 0.0) || !(samples <= kMaxSamples)) {
-    result.status = Status::kInvalidArgument;
-    return result;
+    return Status::kInvalidArgument;
   }
-  double zeros_s[kMaxSwitches];
-  std::size_t count = 0;
-  double last_step = 0.0;
-  double last_s = 0.0;
+  duration_s_ = duration_s;
+  samples_ = samples;
   // k(0) may be 0: the first sign is that of the first sample.
-  const auto last = static_cast<std::uint32_t>(samples);
-  bool positive = model.impulse_response(duration_s / samples) > 0.0;
-  for (std::uint32_t i = 2; i <= last; ++i) {
-    const double time_s = duration_s * (static_cast<double>(i) / samples);
-    const bool next = model.impulse_response(time_s) > 0.0;
-    if (next == positive) {
-      last_s = time_s;
-      continue;
+  last_s_ = duration_s / samples;
+  positive_ = model.impulse_response(last_s_) > 0.0;
+  next_ = 2;
+  running_ = true;
+  return Status::kOk;
+}
+
+void AbsoluteError::take_zero(const ModalModel& model, double zero_s,
+                              Span<double> zeros_s) noexcept {
+  const double step = model.step_response(zero_s);
+  value_ += abs(step - last_step_);
+  last_step_ = step;
+  if (zeros_ < zeros_s.size()) {
+    zeros_s[zeros_] = zero_s;
+  }
+  ++zeros_;
+}
+
+void AbsoluteError::step(const ModalModel& model, Span<double> zeros_s) noexcept {
+  const auto last = static_cast<std::uint32_t>(samples_);
+  for (std::uint32_t k = 0; k < kSamplesPerStep && next_ <= last; ++k, ++next_) {
+    const double time_s = duration_s_ * (static_cast<double>(next_) / samples_);
+    const bool positive = model.impulse_response(time_s) > 0.0;
+    if (positive != positive_) {
+      take_zero(model, zero_between(model, last_s_, time_s), zeros_s);
     }
-    const double before_s = i == 2 ? duration_s / samples : last_s;
-    const double zero_s = zero_between(model, before_s, time_s);
-    const double step = model.step_response(zero_s);
-    result.value += abs(step - last_step);
-    last_step = step;
-    positive = next;
-    last_s = time_s;
-    if (count < kMaxSwitches) {
-      zeros_s[count] = zero_s;
-    }
-    ++count;
+    positive_ = positive;
+    last_s_ = time_s;
   }
-  result.value += abs(model.step_response(duration_s) - last_step);
-  if (count > kMaxSwitches) {
-    result.status = Status::kTooManySwitches;
-    return result;
+  if (running_ && next_ > last) {
+    value_ += abs(model.step_response(duration_s_) - last_step_);
+    running_ = false;
   }
-  // The last zero is the first switch; a zero at T itself would be a switch at 0.
-  for (std::size_t i = 0; i < count / 2; ++i) {
-    const double early_s = zeros_s[i];
-    zeros_s[i] = zeros_s[count - 1 - i];
-    zeros_s[count - 1 - i] = early_s;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    zeros_s[i] = duration_s - zeros_s[i];
-  }
-  const std::size_t at_start = count > 0 && !(zeros_s[0] > 0.0) ? 1 : 0;
-  const Span<const double> times_s(zeros_s + at_start, count - at_start);
-  result.status = result.signal.set(times_s, duration_s);
-  return result;
 }
 
 }  // namespace emax

@@ -292,6 +292,7 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   if (status != Status::kOk) {
     return status;
   }
+  workspace.share_nothing();
   WichmannHill random;
   (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kSeed));
   for (double& number : workspace.numbers().first(kRank * cells_)) {

@@ -25,23 +25,35 @@ std::uint32_t EnergyGuard::trial_number() const noexcept {
 }
 
 Status EnergyGuard::end_search(Status status) noexcept {
-  searching_ = false;
+  phase_ = Phase::kNext;
   ++made_;
   disagreements_ += status != Status::kOk ? 1 : 0;
   return status;
 }
 
-Status EnergyGuard::step(EnergyTrials& trials, EnergySearch& search,
+Status EnergyGuard::begin_search(const EnergyTrials& trials, EnergySearch& search) noexcept {
+  trial_energy_ = trials.energy() / trials.scale();
+  const Status status = search.start(trials.model(), trials.search_settings());
+  if (status != Status::kOk) {
+    return end_search(status);
+  }
+  phase_ = Phase::kSearch;
+  return status;
+}
+
+Status EnergyGuard::step(EnergyTrials& trials, const MaximumEnergy& best, EnergySearch& search,
                          GridWorkspace& workspace) noexcept {
   if (done()) {
     return Status::kOk;
   }
-  if (!searching_) {
-    const Accelerometer device = trials.device(trial_number());
-    trial_energy_ = trials.energy_of(device, workspace) / trials.scale_of(device);
-    const Status status = search.start(trials.model(), trials.search_settings(), workspace);
-    searching_ = status == Status::kOk;
-    return searching_ ? status : end_search(status);
+  if (phase_ != Phase::kSearch) {
+    if (phase_ == Phase::kNext) {
+      trials.begin(trials.device(trial_number()), best, workspace);
+      phase_ = Phase::kTrial;
+    } else {
+      trials.step(workspace);
+    }
+    return trials.done() ? begin_search(trials, search) : Status::kOk;
   }
   const Status status = search.step(trials.model(), workspace);
   if (status != Status::kOk) {

@@ -21,7 +21,14 @@ constexpr double kSmallestGain = 1e-9;
 constexpr double kWorthRefining = 0.01;
 /// Energies that differ by less than this part are of the same signal.
 constexpr double kSame = 1e-11;
+/// What a step of a refinement costs for each switch, in cells of a product.
+constexpr std::size_t kWorkOfRefinement = 32;
+/// What the energy of a pulse costs, and how much of that is done at once.
+constexpr std::size_t kWorkOfPulse = 12;
+constexpr std::size_t kWorkOfPulses = 2048;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
+/// What each pattern may take of them, whatever the capacity, so that it changes no pattern.
+constexpr std::uint64_t kNumbersPerPattern = 8192;
 
 /// The number of cells of at most `cell_s`; a quotient within rounding of a whole number is that
 /// number.
@@ -34,31 +41,31 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
   return static_cast<std::size_t>(whole) + (cells - whole > 1e-9 * cells ? 1u : 0u);
 }
 
-/// A stretch of cells, and a quarter of what turning it adds to the energy.
-struct Pulse {
-  std::size_t cell = 0;
-  std::size_t width = 0;
-  double gain = 0.0;
-};
-
-/// Hands over every stretch of up to kMaxPulse cells of equal sign, with that sign times the sum of
-/// the product over it.
+/// Hands over the stretches of up to kMaxPulse cells of equal sign that begin at a cell, each with
+/// that sign times the sum of the product over it.
 template <typename Visit>
-void visit_pulses(Span<const std::int8_t> signs, Span<const double> product,
+void visit_pulses(std::size_t cell, Signs signs, Span<const double> product,
                   const Visit& visit) noexcept {
-  for (std::size_t i = 0; i < signs.size(); ++i) {
-    const std::int8_t sign = signs[i];
-    const std::size_t left = signs.size() - i;
-    const std::size_t longest = left < PhiOperator::kMaxPulse ? left : PhiOperator::kMaxPulse;
-    double held = 0.0;
-    for (std::size_t k = 0; k < longest && signs[i + k] == sign; ++k) {
-      held += sign > 0 ? product[i + k] : -product[i + k];
-      visit(i, k + 1, held);
-    }
+  const bool sign = signs.is_positive(cell);
+  const std::size_t left = signs.size() - cell;
+  const std::size_t longest = left < PhiOperator::kMaxPulse ? left : PhiOperator::kMaxPulse;
+  double held = 0.0;
+  for (std::size_t k = 0; k < longest && signs.is_positive(cell + k) == sign; ++k) {
+    held += sign ? product[cell + k] : -product[cell + k];
+    visit(k + 1, held);
   }
 }
 
 }  // namespace
+
+void clear(MaximumEnergy& maximum) noexcept {
+  maximum.energy = 0.0;
+  maximum.signal.clear();
+  maximum.cells = 0;
+  maximum.starts = 0;
+  maximum.iterations = 0;
+  maximum.at_rest = false;
+}
 
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
   const double f0 = model.device().natural_frequency_hz;
@@ -67,48 +74,85 @@ std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
   return cells < kMinCells ? kMinCells : cells;
 }
 
+std::size_t search_cells(const ModalModel& model, const SearchSettings& settings) noexcept {
+  return settings.method == Method::kPaper ? cells_for(settings.duration_s, settings.step_s)
+                                           : grid_cells(model, settings.duration_s);
+}
+
 double ascent_shift(const ModalModel& model, double cell_s) noexcept {
   const double gain = model.filter().gain;
   return model.criterion() == Criterion::kEnergyDifference ? gain * gain * cell_s : 0.0;
 }
 
-bool turn_best_pulse(const PhiOperator& phi, Span<std::int8_t> signs,
-                     Span<const double> product) noexcept {
-  const double smallest_gain = 0.25 * kSmallestGain * abs(dot(signs, product));
-  Pulse promised;
-  promised.gain = smallest_gain;
-  visit_pulses(signs, product, [&](std::size_t cell, std::size_t width, double held) {
-    const double gain = phi.pulse_limit(width) - held;
-    if (gain > promised.gain) {
-      promised = {cell, width, gain};
-    }
-  });
-  if (promised.width == 0) {
-    return false;
+void PulseTurn::start() noexcept {
+  best_ = {};
+  next_ = 0;
+  phase_ = Phase::kLimits;
+}
+
+std::size_t PulseTurn::step(const PhiOperator& phi, Signs signs,
+                            Span<const double> product) noexcept {
+  if (phase_ == Phase::kLimits) {
+    return look_at_limits(phi, signs, product);
   }
-  Pulse best = promised;
-  best.gain += phi.pulse(best.cell, best.width) - phi.pulse_limit(best.width);
-  if (!(best.gain > smallest_gain)) {
-    // Near T a pulse may have much less energy than its limit.
-    best = {0, 0, smallest_gain};
-    visit_pulses(signs, product, [&](std::size_t cell, std::size_t width, double held) {
-      if (!(phi.pulse_limit(width) - held > best.gain)) {
-        return;
-      }
-      const double gain = phi.pulse(cell, width) - held;
-      if (gain > best.gain) {
-        best = {cell, width, gain};
+  return phase_ == Phase::kEnergies ? look_at_energies(phi, signs, product) : 0;
+}
+
+std::size_t PulseTurn::look_at_limits(const PhiOperator& phi, Signs signs,
+                                      Span<const double> product) noexcept {
+  const double smallest_gain = 0.25 * kSmallestGain * abs(dot(signs, product));
+  best_.gain = smallest_gain;
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    visit_pulses(i, signs, product, [&](std::size_t width, double held) {
+      const double gain = phi.pulse_limit(width) - held;
+      if (gain > best_.gain) {
+        best_ = {i, width, gain};
       }
     });
   }
-  for (std::size_t i = best.cell; i < best.cell + best.width; ++i) {
-    signs[i] = static_cast<std::int8_t>(-signs[i]);
+  if (best_.width != 0) {
+    best_.gain += phi.pulse(best_.cell, best_.width) - phi.pulse_limit(best_.width);
+    if (!(best_.gain > smallest_gain)) {
+      // Near T a pulse may have much less energy than its limit.
+      best_ = {0, 0, smallest_gain};
+      phase_ = Phase::kEnergies;
+      return signs.size();
+    }
   }
-  return best.width != 0;
+  turn_best(signs);
+  return signs.size();
 }
 
-Status EnergySearch::start(const ModalModel& model, const SearchSettings& settings,
-                           GridWorkspace& /*workspace*/) noexcept {
+std::size_t PulseTurn::look_at_energies(const PhiOperator& phi, Signs signs,
+                                        Span<const double> product) noexcept {
+  std::size_t work = 0;
+  for (; next_ < signs.size() && work < kWorkOfPulses; ++next_) {
+    ++work;
+    visit_pulses(next_, signs, product, [&](std::size_t width, double held) {
+      if (!(phi.pulse_limit(width) - held > best_.gain)) {
+        return;
+      }
+      work += kWorkOfPulse;
+      const double gain = phi.pulse(next_, width) - held;
+      if (gain > best_.gain) {
+        best_ = {next_, width, gain};
+      }
+    });
+  }
+  if (next_ == signs.size()) {
+    turn_best(signs);
+  }
+  return work;
+}
+
+void PulseTurn::turn_best(Signs signs) noexcept {
+  for (std::size_t i = best_.cell; i < best_.cell + best_.width; ++i) {
+    signs.turn(i);
+  }
+  phase_ = Phase::kDone;
+}
+
+Status EnergySearch::start(const ModalModel& model, const SearchSettings& settings) noexcept {
   if (!(settings.duration_s > 0.0) || !is_finite(settings.duration_s)) {
     return Status::kInvalidArgument;
   }
@@ -117,21 +161,19 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
                 settings.max_iterations == 0 || settings.max_iterations > kMaxIterations)) {
     return Status::kInvalidArgument;
   }
-  const std::size_t cells = paper ? cells_for(settings.duration_s, settings.step_s)
-                                  : grid_cells(model, settings.duration_s);
-  const Status status = operator_.set(model, settings.duration_s, cells);
-  if (status != Status::kOk) {
-    return status;
+  const std::size_t cells = search_cells(model, settings);
+  if (cells > kMaxCells) {
+    return Status::kTooManyCells;
   }
   settings_ = settings;
   cells_ = cells;
-  result_ = MaximumEnergy{};
+  clear(result_);
   result_.cells = cells;
   trace_count_ = 0;
   unstorable_energy_ = -std::numeric_limits<double>::infinity();
   climbs_made_ = 0;
   climbs_ = paper ? 1 : kStarts + kPolishings;
-  climbing_ = false;
+  phase_ = Phase::kStart;
   has_result_ = false;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
   shortest_half_period_s_ = 0.5 / model.device().natural_frequency_hz;
@@ -142,36 +184,64 @@ double EnergySearch::progress() const noexcept {
   return climbs_ == 0 ? 1.0 : static_cast<double>(climbs_made_) / static_cast<double>(climbs_);
 }
 
-Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
+Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
+                          Span<double> trace) noexcept {
   if (done()) {
     return Status::kOk;
   }
-  if (climb(workspace)) {
-    return Status::kOk;
+  PhiOperator phi;
+  (void)phi.set(model, settings_.duration_s, cells_);  // `start()` has seen that both are valid.
+  for (std::size_t work = 0; work < kWorkPerStep && !done();) {
+    work += step_once(phi, model, workspace, trace);
   }
-  end_climb(model, workspace);
   // A signal with more switches than the table holds must not be passed over in silence if it beats
   // all others.
   const bool lost = !has_result_ || unstorable_energy_ > result_.energy;
   return done() && lost ? Status::kTooManySwitches : Status::kOk;
 }
 
+/// @returns What it has cost, in cells of a product.
+std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& model,
+                                    GridWorkspace& workspace, Span<double> trace) noexcept {
+  switch (phase_) {
+    case Phase::kStart:
+      begin_climb(phi, workspace);
+      return cells_;
+    case Phase::kClimb:
+      fixed_point_.step(phi, workspace.signs(cells_), workspace.best_signs(cells_),
+                        workspace.product(cells_), trace);
+      if (fixed_point_.done()) {
+        end_fixed_point(trace.size());
+      }
+      return cells_;
+    case Phase::kTurn:
+      return step_turn(phi, model, workspace);
+    case Phase::kRefine:
+      refiner_.step(model, workspace.signal(), workspace.refinement());
+      if (refiner_.done()) {
+        end_refinement(workspace.signal());
+      }
+      return kWorkOfRefinement * (workspace.signal().count() + 1);
+  }
+  return 0;
+}
+
 /// The start of the climb that comes next.
-void EnergySearch::set_start(Span<std::int8_t> signs, Span<double> product) noexcept {
+void EnergySearch::set_start(const PhiOperator& phi, Signs signs, Span<double> product) noexcept {
   std::size_t index = climbs_made_;
   if (settings_.method == Method::kPaper) {
-    signs_of_column(operator_, 0, signs, product);
+    signs_of_column(phi, 0, signs, product);
     return;
   }
   if (index == 0) {
-    for (std::int8_t& sign : signs) {
-      sign = 1;
+    for (std::size_t i = 0; i < signs.size(); ++i) {
+      signs.set(i, true);
     }
     return;
   }
   index -= 1;
   if (index < kColumnStarts) {
-    signs_of_column(operator_, index * cells_ / kColumnStarts, signs, product);
+    signs_of_column(phi, index * cells_ / kColumnStarts, signs, product);
     return;
   }
   index -= kColumnStarts;
@@ -183,21 +253,21 @@ void EnergySearch::set_start(Span<std::int8_t> signs, Span<double> product) noex
     const double cell_s = settings_.duration_s / static_cast<double>(cells_);
     for (std::size_t i = 0; i < signs.size(); ++i) {
       const double half = 0.5 * floor((static_cast<double>(i) + 0.5) * cell_s / half_period_s);
-      signs[i] = half == floor(half) ? std::int8_t{1} : std::int8_t{-1};
+      signs.set(i, half == floor(half));
     }
     return;
   }
   index -= kHalfPeriods;
   WichmannHill random;
   (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kRandomSeed));
-  random.jump(static_cast<std::uint64_t>(index) * kMaxCells);
-  for (std::int8_t& sign : signs) {
-    sign = random.next() < 0.5 ? std::int8_t{-1} : std::int8_t{1};
+  random.jump(index * kNumbersPerPattern);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    signs.set(i, !(random.next() < 0.5));
   }
 }
 
 /// The best signal on the cells of the grid: each takes the sign in its middle.
-void EnergySearch::set_to_result(Span<std::int8_t> signs) const noexcept {
+void EnergySearch::set_to_result(Signs signs) const noexcept {
   const Span<const double> times_s = result_.signal.times_s();
   const double cell_s = settings_.duration_s / static_cast<double>(cells_);
   std::size_t passed = 0;
@@ -205,62 +275,88 @@ void EnergySearch::set_to_result(Span<std::int8_t> signs) const noexcept {
     while (passed < times_s.size() && times_s[passed] <= (static_cast<double>(i) + 0.5) * cell_s) {
       ++passed;
     }
-    signs[i] = passed % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
+    signs.set(i, passed % 2 == 0);
   }
 }
 
-/// Starts a climb, or goes on with it. @returns False if no pulse gains any more.
-bool EnergySearch::climb(GridWorkspace& workspace) noexcept {
-  const Span<std::int8_t> signs = workspace.signs(cells_);
-  const Span<double> product = workspace.product(cells_);
-  const bool paper = settings_.method == Method::kPaper;
-  const bool first = !climbing_;
-  if (first) {
-    turns_ = 0;
-    if (climbs_made_ < kStarts) {
-      ++result_.starts;
-      set_start(signs, product);
-    } else {
-      set_to_result(signs);
-    }
-  } else if (paper || turns_ == kMaxTurns || !turn_best_pulse(operator_, signs, product)) {
-    climbing_ = false;
-    return false;
+void EnergySearch::begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept {
+  turns_ = 0;
+  workspace.share_nothing();
+  if (is_polishing()) {
+    set_to_result(workspace.signs(cells_));
   } else {
+    ++result_.starts;
+    set_start(phi, workspace.signs(cells_), workspace.product(cells_));
+  }
+  run_fixed_point();
+}
+
+void EnergySearch::run_fixed_point() noexcept {
+  const bool paper = settings_.method == Method::kPaper;
+  fixed_point_.start(paper ? settings_.max_iterations : kClimbIterations, shift_);
+  phase_ = Phase::kClimb;
+}
+
+/// @param[in] room Of the trace.
+void EnergySearch::end_fixed_point(std::size_t room) noexcept {
+  const FixedPointResult& run = fixed_point_.result();
+  trace_count_ = run.iterations + 1 < room ? run.iterations + 1 : room;
+  climb_energy_ = run.energy;
+  if (turns_ == 0) {
+    iterations_ = run.iterations;
+    at_rest_ = run.at_rest;
+  }
+  pulse_turn_.start();
+  phase_ = Phase::kTurn;
+}
+
+/// Turns a pulse and lets the fixed point run again, or ends the climb if none gains any more.
+std::size_t EnergySearch::step_turn(const PhiOperator& phi, const ModalModel& model,
+                                    GridWorkspace& workspace) noexcept {
+  if (settings_.method == Method::kPaper || turns_ == kMaxTurns) {
+    end_climb(model, workspace);
+    return 0;
+  }
+  const std::size_t work =
+      pulse_turn_.step(phi, workspace.signs(cells_), workspace.product(cells_));
+  if (!pulse_turn_.done()) {
+    return work;
+  }
+  if (pulse_turn_.turned()) {
     ++turns_;
+    run_fixed_point();
+  } else {
+    end_climb(model, workspace);
   }
-  const FixedPointResult fixed_point =
-      run_fixed_point(operator_, paper ? settings_.max_iterations : kClimbIterations, shift_, signs,
-                      workspace.best_signs(cells_), product, Span<double>(trace_));
-  trace_count_ =
-      fixed_point.iterations + 1 < kTraceLength ? fixed_point.iterations + 1 : kTraceLength;
-  climb_energy_ = fixed_point.energy;
-  if (first) {
-    iterations_ = fixed_point.iterations;
-    at_rest_ = fixed_point.at_rest;
-  }
-  climbing_ = true;
-  return true;
+  return work;
 }
 
 void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept {
-  const bool paper = settings_.method == Method::kPaper;
-  const bool polishing = climbs_made_ >= kStarts;
-  const bool storable =
-      candidate_.set_signs(workspace.signs(cells_), settings_.duration_s) == Status::kOk;
-  if (!storable) {
+  SwitchingSignal& candidate = workspace.signal();
+  if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
     unstorable_energy_ = climb_energy_ > unstorable_energy_ ? climb_energy_ : unstorable_energy_;
-  } else if (paper) {
-    take(energy(model, candidate_));
-  } else if (polishing || is_worth_refining(climb_energy_)) {
-    const double before = result_.energy;
-    take(refine(model, candidate_, workspace.refinement()).energy);
-    // The grid has nothing more to offer.
-    if (polishing && !(result_.energy > before + kSame * abs(before))) {
-      climbs_made_ = climbs_ - 1;
-    }
+  } else if (settings_.method == Method::kPaper) {
+    take(candidate, energy(model, candidate));
+  } else if (is_polishing() || is_worth_refining(climb_energy_)) {
+    refiner_.start(candidate);
+    phase_ = Phase::kRefine;
+    return;
   }
-  if (!polishing) {
+  next_climb();
+}
+
+void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
+  const double before = result_.energy;
+  take(refined, refiner_.result().energy);
+  // The grid has nothing more to offer.
+  if (is_polishing() && !(result_.energy > before + kSame * abs(before))) {
+    climbs_made_ = climbs_ - 1;
+  }
+  next_climb();
+}
+
+void EnergySearch::next_climb() noexcept {
+  if (!is_polishing()) {
     ends_[climbs_made_] = climb_energy_;
   }
   ++climbs_made_;
@@ -268,6 +364,7 @@ void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) 
   if (climbs_made_ == kStarts && !has_result_) {
     climbs_made_ = climbs_;
   }
+  phase_ = Phase::kStart;
 }
 
 /// Whether the end of a climb is near the highest so far, and not that of an earlier climb.
@@ -282,14 +379,14 @@ bool EnergySearch::is_worth_refining(double energy) const noexcept {
   return !has_result_ || energy >= highest - kWorthRefining * abs(highest);
 }
 
-/// Makes the candidate the result if it is better.
-void EnergySearch::take(double energy) noexcept {
+/// Makes a signal the result if it is better.
+void EnergySearch::take(const SwitchingSignal& signal, double energy) noexcept {
   if (has_result_ && !(energy > result_.energy)) {
     return;
   }
   has_result_ = true;
   result_.energy = energy;
-  result_.signal = candidate_;
+  result_.signal = signal;
   if (climbs_made_ < kStarts) {
     result_.iterations = iterations_;
     result_.at_rest = at_rest_;

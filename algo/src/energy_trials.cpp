@@ -18,6 +18,11 @@ constexpr double kDependent = 1e-12;
 /// Rounding that a covariance of a parameter without a variance of its own may show.
 constexpr double kSemidefinite = 1e-6;
 
+/// What trials cost, in cells of a product.
+constexpr std::size_t kWorkOfPrediction = 24;
+constexpr std::size_t kWorkOfSwitch = 6;
+constexpr std::size_t kWorkOfRefinement = 32;
+
 /// The two parameters of each product among the terms.
 constexpr std::size_t kPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 
@@ -31,7 +36,7 @@ bool is_uncertainty(double u) noexcept { return u >= 0.0 && is_finite(u); }
 }  // namespace
 
 Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& best,
-                           const TrialSettings& settings, GridWorkspace& workspace) noexcept {
+                           const TrialSettings& settings) noexcept {
   double factor[3][3];
   Status status = factor_of(settings, factor);
   if (status == Status::kOk) {
@@ -43,12 +48,15 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   if (!(settings.search.duration_s > 0.0) || best.cells == 0) {
     return Status::kInvalidArgument;
   }
-  if (best.cells > kMaxCells) {
+  const bool paper = settings.search.method == Method::kPaper;
+  if (paper && best.cells > GridWorkspace::kMaxTrialCells) {
     return Status::kTooManyCells;
   }
   model_ = at_estimate;
-  best_signal_ = best.signal;
-  settings_ = settings;
+  search_ = settings.search;
+  box_ = settings.box;
+  distribution_ = settings.distribution;
+  gain_follows_ = settings.gain_follows;
   estimate_ = at_estimate.device();
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -56,14 +64,17 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
     }
   }
   range_ = settings.distribution == Distribution::kBox ? 1.0 : kPredictedDeviations;
+  first_generator_ = settings.generator;
   generator_ = settings.generator;
   next_trial_ = 0;
   cells_ = best.cells;
-  if (settings.gain_follows) {
+  if (gain_follows_) {
     (void)model_.set_gain(estimate_.sensitivity);  // A device's sensitivity is a valid gain.
   }
-  predicts_ = settings.search.method == Method::kBest && lay_quadratic(workspace) &&
-              holds_at_corners(workspace);
+  places_ = 0;
+  refining_ = false;
+  predicts_ = false;
+  ready_ = paper || best.signal.count() > kMaxPredicted;
   return Status::kOk;
 }
 
@@ -136,16 +147,16 @@ Status EnergyTrials::check_range(const Accelerometer& estimate, Distribution dis
 }
 
 Accelerometer EnergyTrials::device(std::uint32_t trial) noexcept {
-  const bool is_box = settings_.distribution == Distribution::kBox;
+  const bool is_box = distribution_ == Distribution::kBox;
   if (trial != next_trial_) {
-    generator_ = settings_.generator;
+    generator_ = first_generator_;
     generator_.jump(std::uint64_t{is_box ? 3U : 4U} * trial);
   }
   next_trial_ = trial + 1;
   if (!is_box) {
     return normal_device();
   }
-  const ParameterBox& box = settings_.box;
+  const ParameterBox& box = box_;
   const auto draw = [this](double estimate, double half_width) {
     return uniform_in(estimate - half_width, estimate + half_width, generator_.next());
   };
@@ -208,138 +219,183 @@ EnergyTrials::Place EnergyTrials::place_of(const Accelerometer& device) const no
 
 double EnergyTrials::scale_of(const Accelerometer& device) const noexcept {
   const double ratio = device.sensitivity / estimate_.sensitivity;
-  return settings_.gain_follows ? ratio * ratio : 1.0;
+  return gain_follows_ ? ratio * ratio : 1.0;
 }
 
 void EnergyTrials::set_model(const Accelerometer& device) noexcept {
   Accelerometer scaled = device;
-  if (settings_.gain_follows) {
+  if (gain_follows_) {
     scaled.sensitivity = estimate_.sensitivity;
   }
   (void)model_.set_device(scaled);  // `start()` has seen that the whole range is valid.
 }
 
-/// Sets the signal to the predicted switching times. @returns False if they are out of order.
-bool EnergyTrials::predict(const double (&part)[3]) noexcept {
+/// Sets a signal to the predicted switching times. @returns False if they are out of order.
+bool EnergyTrials::predict(const double (&part)[3], const SwitchingSignal& best,
+                           SwitchingSignal& signal) const noexcept {
   double factors[kTerms];
   for (std::size_t a = 0; a < 3; ++a) {
     factors[a] = part[a];
     factors[3 + a] = part[a] * part[a];
     factors[6 + a] = part[kPairs[a][0]] * part[kPairs[a][1]];
   }
-  const std::size_t count = best_signal_.count();
+  const std::size_t count = best.count();
   double times_s[kMaxPredicted];
   for (std::size_t i = 0; i < count; ++i) {
     double move_s = 0.0;
     for (std::size_t k = 0; k < kTerms; ++k) {
       move_s += factors[k] * terms_[k][i];
     }
-    times_s[i] = best_signal_.times_s()[i] + move_s;
+    times_s[i] = best.times_s()[i] + move_s;
   }
-  return signal_.set(Span<const double>(times_s, count), best_signal_.duration_s()) == Status::kOk;
+  return signal.set(Span<const double>(times_s, count), best.duration_s()) == Status::kOk;
 }
 
-/// Refines the estimate's signal for the device at a place of the range.
-///
-/// @returns Whether it has kept all its switches; `signal_` is the refined one.
-bool EnergyTrials::refine_at(const double (&part)[3], GridWorkspace& workspace) noexcept {
-  const double z[3] = {range_ * part[0], range_ * part[1], range_ * part[2]};
-  set_model(device_at(z));
-  signal_ = best_signal_;
-  (void)refine(model_, signal_, workspace.refinement());
-  return signal_.count() == best_signal_.count();
+/// Where the quadratic is laid through, then where it is looked at.
+EnergyTrials::Place EnergyTrials::place_number(std::size_t index) noexcept {
+  Place place;
+  if (index < kEnds) {
+    place.part[index / 2] = index % 2 == 0 ? 1.0 : -1.0;
+    return place;
+  }
+  if (index < kNodes) {
+    place.part[kPairs[index - kEnds][0]] = 1.0;
+    place.part[kPairs[index - kEnds][1]] = 1.0;
+    return place;
+  }
+  const std::size_t corner = index - kNodes;
+  for (std::size_t a = 0; a < 3; ++a) {
+    place.part[a] = (corner >> a & 1U) != 0 ? 1.0 : -1.0;
+  }
+  return place;
 }
 
-/// Fills the terms of the quadratic that goes through the refined times at the estimate, at both
-/// ends of each axis, and at the positive ends of each two axes together.
-bool EnergyTrials::lay_quadratic(GridWorkspace& workspace) noexcept {
-  const std::size_t count = best_signal_.count();
-  if (count > kMaxPredicted) {
+/// Refines the estimate's signal for the device at the next place of the range.
+void EnergyTrials::prepare(const MaximumEnergy& best, GridWorkspace& workspace) noexcept {
+  if (ready_) {
+    return;
+  }
+  SwitchingSignal& signal = workspace.signal();
+  const Place place = place_number(places_);
+  if (!refining_) {
+    const double z[3] = {range_ * place.part[0], range_ * place.part[1], range_ * place.part[2]};
+    set_model(device_at(z));
+    signal = best.signal;
+    refiner_.start(signal);
+    refining_ = true;
+  }
+  refiner_.step(model_, signal, workspace.refinement());
+  if (!refiner_.done()) {
+    return;
+  }
+  refining_ = false;
+  if (!take_place(place, best.signal, signal)) {
+    ready_ = true;
+    return;
+  }
+  ++places_;
+  predicts_ = places_ == kPlaces;
+  ready_ = predicts_;
+}
+
+/// @returns False if the quadratic does not hold: there is nothing to predict then.
+bool EnergyTrials::take_place(const Place& place, const SwitchingSignal& best,
+                              SwitchingSignal& refined) noexcept {
+  if (refined.count() != best.count()) {
     return false;
   }
-  for (std::size_t a = 0; a < 3; ++a) {
-    double part[3] = {};
-    part[a] = 1.0;
-    if (!refine_at(part, workspace)) {
-      return false;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      terms_[a][i] = signal_.times_s()[i] - best_signal_.times_s()[i];
-    }
-    part[a] = -1.0;
-    if (!refine_at(part, workspace)) {
-      return false;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double up = terms_[a][i];
-      const double down = signal_.times_s()[i] - best_signal_.times_s()[i];
-      terms_[a][i] = 0.5 * (up - down);
-      terms_[3 + a][i] = 0.5 * (up + down);
-    }
+  if (places_ < kNodes) {
+    take_node(best, refined);
+    return true;
   }
-  for (std::size_t pair = 0; pair < 3; ++pair) {
-    const std::size_t a = kPairs[pair][0];
-    const std::size_t b = kPairs[pair][1];
-    double part[3] = {};
-    part[a] = 1.0;
-    part[b] = 1.0;
-    if (!refine_at(part, workspace)) {
-      return false;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      terms_[6 + pair][i] = (signal_.times_s()[i] - best_signal_.times_s()[i]) - terms_[a][i] -
-                            terms_[3 + a][i] - terms_[b][i] - terms_[3 + b][i];
-    }
-  }
-  return true;
+  const double reached = emax::energy(model_, refined);
+  return predict(place.part, best, refined) &&
+         emax::energy(model_, refined) >= reached - kPermittedLoss * abs(reached);
 }
 
-bool EnergyTrials::holds_at_corners(GridWorkspace& workspace) noexcept {
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const double part[3] = {(corner & 1U) != 0 ? 1.0 : -1.0, (corner & 2U) != 0 ? 1.0 : -1.0,
-                            (corner & 4U) != 0 ? 1.0 : -1.0};
-    if (!refine_at(part, workspace)) {
-      return false;
+/// Makes the quadratic go through the refined times of this place.
+void EnergyTrials::take_node(const SwitchingSignal& best, const SwitchingSignal& refined) noexcept {
+  for (std::size_t i = 0; i < best.count(); ++i) {
+    const double moved_s = refined.times_s()[i] - best.times_s()[i];
+    if (places_ >= kEnds) {
+      const std::size_t pair = places_ - kEnds;
+      const std::size_t a = kPairs[pair][0];
+      const std::size_t b = kPairs[pair][1];
+      terms_[6 + pair][i] =
+          moved_s - terms_[a][i] - terms_[3 + a][i] - terms_[b][i] - terms_[3 + b][i];
+      continue;
     }
-    const double reached = emax::energy(model_, signal_);
-    if (!predict(part) ||
-        !(emax::energy(model_, signal_) >= reached - kPermittedLoss * abs(reached))) {
-      return false;
+    const std::size_t a = places_ / 2;
+    if (places_ % 2 == 0) {
+      terms_[a][i] = moved_s;
+      continue;
     }
+    const double up = terms_[a][i];
+    terms_[a][i] = 0.5 * (up - moved_s);
+    terms_[3 + a][i] = 0.5 * (up + moved_s);
   }
-  return true;
 }
 
-double EnergyTrials::energy(std::uint32_t trial, GridWorkspace& workspace) noexcept {
-  return energy_of(device(trial), workspace);
+double EnergyTrials::energy(std::uint32_t trial, const MaximumEnergy& best,
+                            GridWorkspace& workspace) noexcept {
+  return energy_of(device(trial), best, workspace);
 }
 
-double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& workspace) noexcept {
+double EnergyTrials::energy_of(const Accelerometer& device, const MaximumEnergy& best,
+                               GridWorkspace& workspace) noexcept {
+  begin(device, best, workspace);
+  while (!done()) {
+    step(workspace);
+  }
+  return energy();
+}
+
+std::size_t EnergyTrials::work(const MaximumEnergy& best) const noexcept {
+  if (search_.method == Method::kPaper) {
+    return cells_;
+  }
+  return predicts_ ? kWorkOfPrediction + kWorkOfSwitch * best.signal.count()
+                   : kWorkOfRefinement * (best.signal.count() + 1);
+}
+
+void EnergyTrials::begin(const Accelerometer& device, const MaximumEnergy& best,
+                         GridWorkspace& workspace) noexcept {
   set_model(device);
-  return scale_of(device) * (settings_.search.method == Method::kBest
-                                 ? best_energy(device, workspace)
-                                 : paper_energy(workspace));
-}
-
-double EnergyTrials::best_energy(const Accelerometer& device, GridWorkspace& workspace) noexcept {
+  scale_ = scale_of(device);
+  done_ = false;
+  if (search_.method == Method::kPaper) {
+    PhiOperator phi;
+    (void)phi.set(model_, search_.duration_s, cells_);
+    signs_of_column(phi, 0, workspace.signs(cells_), workspace.product(cells_));
+    fixed_point_.start(search_.max_iterations, 0.0);
+    return;
+  }
+  SwitchingSignal& signal = workspace.signal();
   if (predicts_) {
     const Place place = place_of(device);
-    if (place.inside && predict(place.part)) {
-      return emax::energy(model_, signal_);
+    if (place.inside && predict(place.part, best.signal, signal)) {
+      energy_ = emax::energy(model_, signal);
+      done_ = true;
+      return;
     }
   }
-  signal_ = best_signal_;
-  return refine(model_, signal_, workspace.refinement()).energy;
+  signal = best.signal;
+  refiner_.start(signal);
 }
 
-double EnergyTrials::paper_energy(GridWorkspace& workspace) noexcept {
-  (void)phi_.set(model_, settings_.search.duration_s, cells_);
-  const Span<std::int8_t> signs = workspace.signs(cells_);
-  const Span<double> product = workspace.product(cells_);
-  signs_of_column(phi_, 0, signs, product);
-  return run_fixed_point(phi_, settings_.search.max_iterations, 0.0, signs,
-                         workspace.best_signs(cells_), product, Span<double>())
-      .energy;
+void EnergyTrials::step(GridWorkspace& workspace) noexcept {
+  if (search_.method == Method::kBest) {
+    refiner_.step(model_, workspace.signal(), workspace.refinement());
+    energy_ = refiner_.result().energy;
+    done_ = refiner_.done();
+    return;
+  }
+  PhiOperator phi;
+  (void)phi.set(model_, search_.duration_s, cells_);
+  fixed_point_.step(phi, workspace.signs(cells_), workspace.best_signs(cells_),
+                    workspace.product(cells_), Span<double>());
+  energy_ = fixed_point_.result().energy;
+  done_ = fixed_point_.done();
 }
 
 }  // namespace emax

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kMaxSteps = 200;
 constexpr std::size_t kMaxHalvings = 30;
+/// Of the conjugate gradients in one step: iterations times switches.
+constexpr std::size_t kSolvePerStep = 1024;
 /// A step that promises less than this part of the energy is the last one: it takes the switches to
 /// where their gradient is rounding, and changes the energy by less than its last digits.
 constexpr double kLastGain = 1e-14;
@@ -26,6 +28,8 @@ double dot(Span<const double> a, Span<const double> b) noexcept {
   }
   return sum;
 }
+
+}  // namespace
 
 /// The energy of a signal with its first and second derivatives with respect to switching times.
 ///
@@ -46,12 +50,26 @@ class EnergyShape {
     }
   }
 
+  /// Goes on with a signal that has been taken.
+  void resume(const SwitchingSignal& signal) noexcept {
+    count_ = signal.count();
+    duration_s_ = signal.duration_s();
+  }
+
   /// Takes a signal: fills `gradient` and `slope`. @returns Its energy.
   double take(const SwitchingSignal& signal) noexcept;
 
-  /// Solves (minus the second derivatives) step = gradient by conjugate gradients. Where the energy
-  /// is not concave the step so far is kept, or the gradient itself if there is none yet.
-  void solve_for_step() noexcept;
+  /// Begins to solve (minus the second derivatives) step = gradient by conjugate gradients.
+  /// @returns The square of what is left of the gradient.
+  double begin_step() noexcept;
+  /// One iteration: `norm2` is what is left. @returns False where the energy is not concave: the
+  /// step stays as it is.
+  bool improve_step(double& norm2) noexcept;
+  /// A step that promises nothing becomes one along the gradient.
+  void end_step() noexcept;
+
+  /// Memory for other switching times, when the step is known.
+  Span<double> times_s() const noexcept { return image_; }
 
   /// What the step promises to add to the energy.
   double promise() const noexcept { return 0.5 * dot(gradient.first(count_), step.first(count_)); }
@@ -188,45 +206,52 @@ void EnergyShape::apply_between_switches(Span<const double> vector,
   }
 }
 
-void EnergyShape::solve_for_step() noexcept {
+double EnergyShape::begin_step() noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     step[i] = 0.0;
     residual_[i] = gradient[i];
     direction_[i] = gradient[i];
   }
+  return dot(residual_.first(count_), residual_.first(count_));
+}
+
+bool EnergyShape::improve_step(double& norm2) noexcept {
   const Span<double> residual = residual_.first(count_);
-  double norm2 = dot(residual, residual);
-  const double enough = 1e-24 * norm2;
-  for (std::size_t iteration = 0; iteration < 2 * count_ && norm2 > enough; ++iteration) {
-    apply_between_switches(direction_, image_);
-    for (std::size_t i = 0; i < count_; ++i) {
-      image_[i] = -8.0 * image_[i] - slope[i] * direction_[i];
-    }
-    const double bend = dot(direction_.first(count_), image_.first(count_));
-    if (!(bend > 0.0)) {
-      break;
-    }
-    const double length = norm2 / bend;
-    for (std::size_t i = 0; i < count_; ++i) {
-      step[i] += length * direction_[i];
-      residual[i] -= length * image_[i];
-    }
-    const double next = dot(residual, residual);
-    for (std::size_t i = 0; i < count_; ++i) {
-      direction_[i] = residual[i] + (next / norm2) * direction_[i];
-    }
-    norm2 = next;
+  apply_between_switches(direction_, image_);
+  for (std::size_t i = 0; i < count_; ++i) {
+    image_[i] = -8.0 * image_[i] - slope[i] * direction_[i];
   }
-  if (!(promise() > 0.0)) {
-    double largest = 0.0;
-    for (const double element : gradient.first(count_)) {
-      largest = abs(element) > largest ? abs(element) : largest;
-    }
-    for (std::size_t i = 0; i < count_ && largest > 0.0; ++i) {
-      step[i] = gradient[i] / largest * (kGradientStep * duration_s_);
-    }
+  const double bend = dot(direction_.first(count_), image_.first(count_));
+  if (!(bend > 0.0)) {
+    return false;
+  }
+  const double length = norm2 / bend;
+  for (std::size_t i = 0; i < count_; ++i) {
+    step[i] += length * direction_[i];
+    residual[i] -= length * image_[i];
+  }
+  const double next = dot(residual, residual);
+  for (std::size_t i = 0; i < count_; ++i) {
+    direction_[i] = residual[i] + (next / norm2) * direction_[i];
+  }
+  norm2 = next;
+  return true;
+}
+
+void EnergyShape::end_step() noexcept {
+  if (promise() > 0.0) {
+    return;
+  }
+  double largest = 0.0;
+  for (const double element : gradient.first(count_)) {
+    largest = abs(element) > largest ? abs(element) : largest;
+  }
+  for (std::size_t i = 0; i < count_ && largest > 0.0; ++i) {
+    step[i] = gradient[i] / largest * (kGradientStep * duration_s_);
   }
 }
+
+namespace {
 
 /// The largest multiple of the step before two switches meet or one leaves [0, T].
 double room(const SwitchingSignal& signal, Span<const double> step) noexcept {
@@ -245,11 +270,12 @@ double room(const SwitchingSignal& signal, Span<const double> step) noexcept {
   return limit;
 }
 
-/// The signal with its switches moved by a multiple of the step; those that meet or leave are gone.
-SwitchingSignal moved(const SwitchingSignal& signal, Span<const double> step,
-                      double multiple) noexcept {
+/// The switches moved by a multiple of the step; those that meet or leave are gone.
+///
+/// @param[out] times_s The times. @returns How many there are.
+std::size_t move(const SwitchingSignal& signal, Span<const double> step, double multiple,
+                 Span<double> times_s) noexcept {
   const double gap_s = kMeetingGap * signal.duration_s();
-  double times_s[kMaxSwitches];
   std::size_t count = 0;
   for (std::size_t i = 0; i < signal.count(); ++i) {
     const double time_s = signal.times_s()[i] + multiple * step[i];
@@ -262,10 +288,7 @@ SwitchingSignal moved(const SwitchingSignal& signal, Span<const double> step,
     }
     times_s[count++] = time_s;
   }
-  SwitchingSignal result = signal;
-  // Cannot fail: the times ascend inside (0, T) and are no more than before.
-  (void)result.set(Span<const double>(times_s, count), signal.duration_s());
-  return result;
+  return count;
 }
 
 /// Drops the last switch if nothing but rounding is lost: towards T the energy becomes flat in it,
@@ -275,13 +298,12 @@ void drop_idle_end(const ModalModel& model, SwitchingSignal& signal, double& bes
   if (count == 0 || signal.times_s()[count - 1] < kIdleEnd * signal.duration_s()) {
     return;
   }
-  SwitchingSignal shorter = signal;
-  // Cannot fail: fewer of the same times.
-  (void)shorter.set(signal.times_s().first(count - 1), signal.duration_s());
-  const double found = energy(model, shorter);
+  const Span<const double> shorter_s = signal.times_s().first(count - 1);
+  const double found = energy(model, shorter_s, signal.duration_s());
   if (found >= best - kLastGain * abs(best)) {
     best = found;
-    signal = shorter;
+    // Cannot fail: fewer of the same times.
+    (void)signal.set(shorter_s, signal.duration_s());
   }
 }
 
@@ -297,38 +319,106 @@ double energy_gradient(const ModalModel& model, const SwitchingSignal& signal,
   return energy;
 }
 
-Refinement refine(const ModalModel& model, SwitchingSignal& signal, Span<double> scratch) noexcept {
+void Refiner::start(const SwitchingSignal& signal) noexcept {
+  *this = Refiner();
+  first_count_ = signal.count();
+  phase_ = Phase::kGradient;
+}
+
+void Refiner::end(const ModalModel& model, SwitchingSignal& signal) noexcept {
+  drop_idle_end(model, signal, result_.energy);
+  result_.dropped = first_count_ - signal.count();
+  phase_ = Phase::kDone;
+}
+
+void Refiner::step(const ModalModel& model, SwitchingSignal& signal,
+                   Span<double> scratch) noexcept {
   EnergyShape shape(model, scratch);
-  Refinement result;
-  const std::size_t first_count = signal.count();
-  result.energy = shape.take(signal);
-  bool moving = signal.count() > 0;
-  while (moving && result.steps < kMaxSteps) {
-    shape.solve_for_step();
-    const bool last = !(shape.promise() > kLastGain * abs(result.energy));
-    const std::size_t tries = last ? 1 : kMaxHalvings;
-    double multiple = room(signal, shape.step);
-    multiple = multiple < 1.0 ? multiple : 1.0;
-    moving = false;
-    for (std::size_t i = 0; i < tries; ++i) {
-      const SwitchingSignal candidate = moved(signal, shape.step, multiple);
-      const double found = energy(model, candidate);
-      if (found >= result.energy) {
-        moving = !last && found > result.energy && candidate.count() > 0;
-        signal = candidate;
-        result.energy = found;
-        ++result.steps;
-        break;
-      }
-      multiple *= 0.5;
-    }
-    if (moving) {
-      (void)shape.take(signal);
+  shape.resume(signal);
+  switch (phase_) {
+    case Phase::kGradient:
+      take_gradient(model, signal, shape);
+      return;
+    case Phase::kSolve:
+      solve(signal, shape);
+      return;
+    case Phase::kTry:
+      try_step(model, signal, shape);
+      return;
+    case Phase::kDone:
+      return;
+  }
+}
+
+void Refiner::take_gradient(const ModalModel& model, SwitchingSignal& signal,
+                            EnergyShape& shape) noexcept {
+  const double found = shape.take(signal);
+  if (!begun_) {
+    result_.energy = found;
+    begun_ = true;
+  }
+  if (signal.count() == 0 || result_.steps == kMaxSteps) {
+    end(model, signal);
+    return;
+  }
+  norm2_ = shape.begin_step();
+  enough_ = 1e-24 * norm2_;
+  iterations_ = 0;
+  phase_ = Phase::kSolve;
+}
+
+void Refiner::solve(const SwitchingSignal& signal, EnergyShape& shape) noexcept {
+  bool going = true;
+  for (std::size_t work = 0; going && work < kSolvePerStep; work += signal.count()) {
+    if (iterations_ == 2 * signal.count() || !(norm2_ > enough_)) {
+      going = false;
+    } else {
+      going = shape.improve_step(norm2_);
+      ++iterations_;
     }
   }
-  drop_idle_end(model, signal, result.energy);
-  result.dropped = first_count - signal.count();
-  return result;
+  if (going) {
+    return;
+  }
+  shape.end_step();
+  last_ = !(shape.promise() > kLastGain * abs(result_.energy));
+  tries_left_ = last_ ? 1 : kMaxHalvings;
+  const double most = room(signal, shape.step);
+  multiple_ = most < 1.0 ? most : 1.0;
+  phase_ = Phase::kTry;
+}
+
+void Refiner::try_step(const ModalModel& model, SwitchingSignal& signal,
+                       EnergyShape& shape) noexcept {
+  const std::size_t count = move(signal, shape.step, multiple_, shape.times_s());
+  const Span<const double> times_s = shape.times_s().first(count);
+  const double found = energy(model, times_s, signal.duration_s());
+  if (!(found >= result_.energy)) {
+    multiple_ *= 0.5;
+    if (--tries_left_ == 0) {
+      end(model, signal);
+    }
+    return;
+  }
+  const bool moving = !last_ && found > result_.energy && count > 0;
+  // Cannot fail: the times ascend inside (0, T) and are no more than before.
+  (void)signal.set(times_s, signal.duration_s());
+  result_.energy = found;
+  ++result_.steps;
+  if (!moving) {
+    end(model, signal);
+    return;
+  }
+  phase_ = Phase::kGradient;
+}
+
+Refinement refine(const ModalModel& model, SwitchingSignal& signal, Span<double> scratch) noexcept {
+  Refiner refiner;
+  refiner.start(signal);
+  while (!refiner.done()) {
+    refiner.step(model, signal, scratch);
+  }
+  return refiner.result();
 }
 
 }  // namespace emax

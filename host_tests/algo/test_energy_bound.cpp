@@ -37,7 +37,7 @@ Status prove(const ModalModel& model, double duration_s) {
 double searched(const ModalModel& model, double duration_s) {
   SearchSettings settings;
   settings.duration_s = duration_s;
-  Status status = search.start(model, settings, workspace);
+  Status status = search.start(model, settings);
   while (status == Status::kOk && !search.done()) {
     status = search.step(model, workspace);
   }

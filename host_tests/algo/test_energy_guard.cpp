@@ -15,6 +15,7 @@ constexpr std::uint32_t kSeed[] = {123456789, 345678901, 567890123, 789012345};
 GridWorkspace workspace;
 EnergySearch search;
 EnergyTrials trials;
+MaximumEnergy best;
 EnergyGuard guard;
 
 TrialSettings settings_for(double duration_s) {
@@ -26,18 +27,26 @@ TrialSettings settings_for(double duration_s) {
 }
 
 MaximumEnergy best_of(const ModalModel& model, const SearchSettings& settings) {
-  EXPECT_EQ(search.start(model, settings, workspace), Status::kOk);
+  EXPECT_EQ(search.start(model, settings), Status::kOk);
   while (!search.done()) {
     EXPECT_EQ(search.step(model, workspace), Status::kOk);
   }
   return search.result();
 }
 
+Status start(const ModalModel& model, const TrialSettings& settings) {
+  const Status status = trials.start(model, best, settings);
+  while (status == Status::kOk && !trials.ready()) {
+    trials.prepare(best, workspace);
+  }
+  return status;
+}
+
 void run_guard(std::uint32_t trial_count, std::uint32_t trial_of_maximum) {
   guard.start(trial_count, trial_of_maximum);
   double progress = 0.0;
   while (!guard.done()) {
-    ASSERT_EQ(guard.step(trials, search, workspace), Status::kOk);
+    ASSERT_EQ(guard.step(trials, best, search, workspace), Status::kOk);
     EXPECT_GE(guard.progress(), progress);
     progress = guard.progress();
   }
@@ -50,8 +59,8 @@ TEST(EnergyGuard, AgreesWithTrialsOfTheBestSignal) {
   for (const bool follows : {false, true}) {
     TrialSettings settings = settings_for(2e-3);
     settings.gain_follows = follows;
-    ASSERT_EQ(trials.start(model, best_of(model, settings.search), settings, workspace),
-              Status::kOk);
+    best = best_of(model, settings.search);
+    ASSERT_EQ(start(model, settings), Status::kOk);
     run_guard(1000, 17);
     EXPECT_EQ(guard.disagreements(), 0u);
     EXPECT_LE(guard.largest_excess(), EnergyGuard::kTolerance);
@@ -62,10 +71,10 @@ TEST(EnergyGuard, NoticesTrialsThatFollowAPoorerSignal) {
   // A signal without switches has nothing to refine: 0.0011 where 0.0051 is possible.
   const ModalModel model = paper_model();
   const TrialSettings settings = settings_for(2e-3);
-  MaximumEnergy poor{};
-  poor.cells = grid_cells(model, 2e-3);
-  ASSERT_EQ(poor.signal.set({}, 2e-3), Status::kOk);
-  ASSERT_EQ(trials.start(model, poor, settings, workspace), Status::kOk);
+  best = {};
+  best.cells = grid_cells(model, 2e-3);
+  ASSERT_EQ(best.signal.set({}, 2e-3), Status::kOk);
+  ASSERT_EQ(start(model, settings), Status::kOk);
   run_guard(1000, 0);
   EXPECT_EQ(guard.disagreements(), EnergyGuard::kSearches);
   EXPECT_GT(guard.largest_excess(), 3.0);
@@ -74,10 +83,11 @@ TEST(EnergyGuard, NoticesTrialsThatFollowAPoorerSignal) {
 TEST(EnergyGuard, LeavesTheTrialsAsTheyAre) {
   const ModalModel model = paper_model();
   const TrialSettings settings = settings_for(2e-3);
-  ASSERT_EQ(trials.start(model, best_of(model, settings.search), settings, workspace), Status::kOk);
-  const double before = trials.energy(5, workspace);
+  best = best_of(model, settings.search);
+  ASSERT_EQ(start(model, settings), Status::kOk);
+  const double before = trials.energy(5, best, workspace);
   run_guard(1, 0);
-  EXPECT_EQ(trials.energy(5, workspace), before);
+  EXPECT_EQ(trials.energy(5, best, workspace), before);
 }
 
 TEST(EnergyGuard, CountsASearchThatFailsAsADisagreement) {
@@ -87,15 +97,15 @@ TEST(EnergyGuard, CountsASearchThatFailsAsADisagreement) {
   ASSERT_EQ(model.set({1.0, 4073.0, 0.001}, {2, 1000.0, 1.0}, Criterion::kIntegralSquareError),
             Status::kOk);
   TrialSettings settings = settings_for(50e-3);
-  MaximumEnergy poor{};
-  poor.cells = grid_cells(model, 50e-3);
+  best = {};
+  best.cells = grid_cells(model, 50e-3);
   const double times_s[] = {1e-3};
-  ASSERT_EQ(poor.signal.set(times_s, 50e-3), Status::kOk);
-  ASSERT_EQ(trials.start(model, poor, settings, workspace), Status::kOk);
+  ASSERT_EQ(best.signal.set(times_s, 50e-3), Status::kOk);
+  ASSERT_EQ(start(model, settings), Status::kOk);
   guard.start(1000, 0);
   Status status = Status::kOk;
   while (status == Status::kOk && !guard.done()) {
-    status = guard.step(trials, search, workspace);
+    status = guard.step(trials, best, search, workspace);
   }
   EXPECT_EQ(status, Status::kTooManySwitches);
   EXPECT_EQ(guard.searches(), 1u);

@@ -11,6 +11,7 @@
 
 #include "support/paper_device.hpp"
 #include "support/rounding.hpp"
+#include "support/sign_pattern.hpp"
 
 namespace emax {
 namespace {
@@ -24,6 +25,7 @@ constexpr Criterion kDifference = Criterion::kEnergyDifference;
 
 GridWorkspace workspace;
 EnergySearch search;
+double trace[64];
 
 SearchSettings best_for(double duration_s) {
   SearchSettings settings;
@@ -32,9 +34,9 @@ SearchSettings best_for(double duration_s) {
 }
 
 Status run(const ModalModel& model, const SearchSettings& settings) {
-  Status status = search.start(model, settings, workspace);
+  Status status = search.start(model, settings);
   while (status == Status::kOk && !search.done()) {
-    status = search.step(model, workspace);
+    status = search.step(model, workspace, trace);
   }
   return status;
 }
@@ -180,21 +182,24 @@ TEST(TurnBestPulse, ClimbsUntilNoPulseGains) {
     ASSERT_EQ(model.set(kPaperDevice, test::kPaperFilter, criterion), Status::kOk);
     PhiOperator phi{};
     ASSERT_EQ(phi.set(model, 1e-3, kCells), Status::kOk);
-    std::int8_t signs[kCells];
-    for (std::int8_t& sign : signs) {
-      sign = random() % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
-    }
-    const auto energy_of = [&](Span<const std::int8_t> pattern) {
+    const test::SignPattern pattern = test::random_signs(kCells, random);
+    const Signs signs = pattern.view();
+    const auto energy_of = [&](Signs of) {
       SwitchingSignal signal{};
-      EXPECT_EQ(signal.set_signs(pattern, 1e-3), Status::kOk);
+      EXPECT_EQ(signal.set_signs(of, 1e-3), Status::kOk);
       return energy(model, signal);
     };
     double product[kCells];
     double reached = energy_of(signs);
     const double tolerance = 10.0 * test::rounding_of(model);
     for (;;) {
-      phi.multiply(Span<const std::int8_t>(signs), product);
-      if (!turn_best_pulse(phi, signs, product)) {
+      phi.multiply(signs, product);
+      PulseTurn turn;
+      turn.start();
+      while (!turn.done()) {
+        turn.step(phi, signs, product);
+      }
+      if (!turn.turned()) {
         break;
       }
       const double next = energy_of(signs);
@@ -203,11 +208,12 @@ TEST(TurnBestPulse, ClimbsUntilNoPulseGains) {
     }
     // Every stretch of equal signs up to the longest pulse, turned by hand.
     for (std::size_t i = 0; i < kCells; ++i) {
-      std::int8_t turned[kCells];
-      std::copy(std::begin(signs), std::end(signs), turned);
+      const test::SignPattern copy(kCells);
+      const Signs turned = copy.view();
+      turned.copy(signs);
       for (std::size_t j = i; j < kCells && j < i + PhiOperator::kMaxPulse && signs[j] == signs[i];
            ++j) {
-        turned[j] = static_cast<std::int8_t>(-turned[j]);
+        turned.turn(j);
         EXPECT_LE(energy_of(turned), reached + 1e-9 * std::fabs(reached) + tolerance)
             << i << ' ' << j;
       }
@@ -226,8 +232,8 @@ TEST(EnergySearch, PaperMethodIsTheFixedPointFromTheFirstColumn) {
   EXPECT_EQ(search.result().iterations, 6u);
   EXPECT_TRUE(search.result().at_rest);
   EXPECT_NEAR(kPaperA2 * search.result().energy, 0.00448654991209, 0.6e-14);
-  EXPECT_EQ(search.trace().size(), 7u);
-  EXPECT_NEAR(kPaperA2 * search.trace()[0], 0.00381585783775, 0.6e-14);
+  EXPECT_EQ(search.trace_count(), 7u);
+  EXPECT_NEAR(kPaperA2 * trace[0], 0.00381585783775, 0.6e-14);
 }
 
 TEST(EnergySearch, ASecondRunEndsOnTheSameDigits) {
@@ -242,22 +248,22 @@ TEST(EnergySearch, RefusesWhatItCannotDo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ModalModel model = paper_model();
   for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(search.start(model, best_for(bad), workspace), Status::kInvalidArgument);
+    EXPECT_EQ(search.start(model, best_for(bad)), Status::kInvalidArgument);
   }
-  EXPECT_EQ(search.start(model, best_for(1.0), workspace), Status::kTooManyCells);
+  EXPECT_EQ(search.start(model, best_for(1.0)), Status::kTooManyCells);
   SearchSettings paper = best_for(2e-3);
   paper.method = Method::kPaper;
   paper.step_s = 2e-6;
-  EXPECT_EQ(search.start(model, paper, workspace), Status::kInvalidArgument);
+  EXPECT_EQ(search.start(model, paper), Status::kInvalidArgument);
   paper.max_iterations = kMaxIterations + 1;
-  EXPECT_EQ(search.start(model, paper, workspace), Status::kInvalidArgument);
+  EXPECT_EQ(search.start(model, paper), Status::kInvalidArgument);
   paper.max_iterations = 30;
   for (const double bad : {0.0, -1.0, nan, 3e-3}) {
     paper.step_s = bad;
-    EXPECT_EQ(search.start(model, paper, workspace), Status::kInvalidArgument);
+    EXPECT_EQ(search.start(model, paper), Status::kInvalidArgument);
   }
   paper.step_s = 1e-9;
-  EXPECT_EQ(search.start(model, paper, workspace), Status::kTooManyCells);
+  EXPECT_EQ(search.start(model, paper), Status::kTooManyCells);
 }
 
 TEST(EnergySearch, MoreSwitchesThanTheTableHoldsAreAnErrorNotAWrongAnswer) {

@@ -21,6 +21,7 @@ constexpr ParameterBox kPaperBox = {0.003, 6.0, 0.0004};
 GridWorkspace workspace;
 EnergySearch search;
 EnergyTrials trials;
+MaximumEnergy best;
 
 TrialSettings settings_for(Method method, double duration_s) {
   TrialSettings settings;
@@ -34,11 +35,19 @@ TrialSettings settings_for(Method method, double duration_s) {
 }
 
 Status start(const TrialSettings& settings, const ModalModel& model) {
-  Status status = search.start(model, settings.search, workspace);
+  Status status = search.start(model, settings.search);
   while (status == Status::kOk && !search.done()) {
     status = search.step(model, workspace);
   }
-  return status == Status::kOk ? trials.start(model, search.result(), settings, workspace) : status;
+  if (status != Status::kOk) {
+    return status;
+  }
+  best = search.result();
+  status = trials.start(model, best, settings);
+  while (status == Status::kOk && !trials.ready()) {
+    trials.prepare(best, workspace);
+  }
+  return status;
 }
 
 /// The largest energy that the whole search finds for a device, filter unchanged.
@@ -46,7 +55,7 @@ double full_search(const Accelerometer& device, const TrialSettings& settings) {
   ModalModel model = paper_model();
   EXPECT_EQ(model.set_device(device), Status::kOk);
   EnergySearch full;
-  EXPECT_EQ(full.start(model, settings.search, workspace), Status::kOk);
+  EXPECT_EQ(full.start(model, settings.search), Status::kOk);
   while (!full.done()) {
     EXPECT_EQ(full.step(model, workspace), Status::kOk);
   }
@@ -69,12 +78,12 @@ TEST(EnergyTrials, DoNotDependOnTheirOrder) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   std::vector<double> forward;
   for (std::uint32_t t = 0; t < 50; ++t) {
-    forward.push_back(trials.energy(t, workspace));
+    forward.push_back(trials.energy(t, best, workspace));
   }
   for (std::uint32_t t = 50; t-- > 0;) {
-    EXPECT_EQ(trials.energy(t, workspace), forward[t]);
+    EXPECT_EQ(trials.energy(t, best, workspace), forward[t]);
   }
-  EXPECT_EQ(trials.energy(17, workspace), forward[17]);
+  EXPECT_EQ(trials.energy(17, best, workspace), forward[17]);
 }
 
 TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
@@ -84,7 +93,7 @@ TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
     for (std::uint32_t t = 0; t < 12; ++t) {
       const Accelerometer device = trials.device(t);
       const double expected = full_search(device, settings);
-      EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
+      EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
     }
   }
 }
@@ -108,7 +117,7 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
     settings.box = c.box;
     settings.gain_follows = follows;
     ASSERT_EQ(start(settings, model), Status::kOk);
-    const SwitchingSignal best = search.result().signal;
+    const SwitchingSignal best_signal = search.result().signal;
     EXPECT_TRUE(trials.predicts());
     for (std::uint32_t t = 0; t < 1000; ++t) {
       const Accelerometer device = trials.device(t);
@@ -117,10 +126,10 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
       if (follows) {
         ASSERT_EQ(moved.set_gain(device.sensitivity), Status::kOk);
       }
-      SwitchingSignal signal = best;
+      SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
       // 1e-9 is promised, 1e-10 is seen to at the corners, and inside them it is better.
-      ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-10 * std::fabs(expected)) << t;
+      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-10 * std::fabs(expected)) << t;
     }
   }
 }
@@ -158,7 +167,7 @@ TEST(EnergyTrials, WhereNoQuadraticHoldsEachTrialIsARefinement) {
     ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
     SwitchingSignal signal = search.result().signal;
     const double expected = refine(moved, signal, workspace.refinement()).energy;
-    EXPECT_EQ(trials.energy(t, workspace), expected) << t;
+    EXPECT_EQ(trials.energy(t, best, workspace), expected) << t;
   }
 }
 
@@ -222,22 +231,22 @@ TEST(NormalTrials, TakeFourNumbersEachAndReplay) {
     const double z = std::sqrt(-2.0 * std::log(u[0])) * std::cos(2.0 * pi * u[1]);
     EXPECT_NEAR(trials.device(t).sensitivity, 1.037 + 3e-3 * z, 1e-14) << t;
   }
-  const double seventeen = trials.energy(17, workspace);
-  const double three = trials.energy(3, workspace);
-  EXPECT_EQ(trials.energy(17, workspace), seventeen);
-  EXPECT_EQ(trials.energy(3, workspace), three);
+  const double seventeen = trials.energy(17, best, workspace);
+  const double three = trials.energy(3, best, workspace);
+  EXPECT_EQ(trials.energy(17, best, workspace), seventeen);
+  EXPECT_EQ(trials.energy(3, best, workspace), three);
 }
 
 TEST(NormalTrials, AreWhatRefinementToTheEndFinds) {
   for (const double duration_s : {2e-3, 10e-3}) {
     ASSERT_EQ(start(normal_settings(duration_s), paper_model()), Status::kOk);
-    const SwitchingSignal best = search.result().signal;
+    const SwitchingSignal best_signal = search.result().signal;
     for (std::uint32_t t = 0; t < 1000; ++t) {
       ModalModel moved = paper_model();
       ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
-      SwitchingSignal signal = best;
+      SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
-      ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-9 * expected) << t;
+      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-9 * expected) << t;
     }
   }
 }
@@ -253,44 +262,45 @@ TEST(NormalTrials, TakeAParameterWithoutUncertaintyAndRefuseWhatIsNoCovariance) 
   const auto refuse = [&](std::size_t i, std::size_t j, double value) {
     TrialSettings bad = normal_settings(2e-3);
     bad.covariance[i][j] = bad.covariance[j][i] = value;
-    return trials.start(paper_model(), search.result(), bad, workspace);
+    return trials.start(paper_model(), best, bad);
   };
   EXPECT_EQ(refuse(0, 0, -1e-9), Status::kInvalidArgument);
   EXPECT_EQ(refuse(0, 1, 0.019), Status::kInvalidArgument);  // A correlation above 1.
   EXPECT_EQ(refuse(2, 2, std::nan("")), Status::kInvalidArgument);
   TrialSettings bad = normal_settings(2e-3);
   bad.covariance[0][1] *= 1.1;
-  EXPECT_EQ(trials.start(paper_model(), search.result(), bad, workspace), Status::kInvalidArgument);
+  EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kInvalidArgument);
   // Damping 0.3182 less six times 0.0531 is below 0.
   bad = normal_settings(2e-3);
   for (std::size_t i = 0; i < 3; ++i) {
     bad.covariance[2][i] = bad.covariance[i][2] = i == 2 ? 0.0531 * 0.0531 : 0.0;
   }
-  EXPECT_EQ(trials.start(paper_model(), search.result(), bad, workspace), Status::kInvalidArgument);
+  EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kInvalidArgument);
   bad.covariance[2][2] = 0.05 * 0.05;
-  EXPECT_EQ(trials.start(paper_model(), search.result(), bad, workspace), Status::kOk);
+  EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kOk);
 }
 
 TEST(EnergyTrials, PaperMethodRunsTheWholeFixedPointInEachTrial) {
   const TrialSettings settings = settings_for(Method::kPaper, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, workspace), 0.00448654991209, 0.6e-14);
+  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, best, workspace), 0.00448654991209,
+              0.6e-14);
   for (std::uint32_t t = 0; t < 5; ++t) {
     const Accelerometer device = trials.device(t);
     const double expected = full_search(device, settings);
-    EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
+    EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
   }
 }
 
 TEST(EnergyTrials, LargestCornerOfTheBoxMeetsTheKnownNumber) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   // Eight digits are known.
-  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, workspace);
+  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, best, workspace);
   EXPECT_NEAR(corner, 0.0051346992, 0.5e-10);
   for (const double s : {1.034, 1.040}) {
     for (const double f0_hz : {4067.0, 4079.0}) {
       for (const double damping : {0.3178, 0.3186}) {
-        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, workspace), corner);
+        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, best, workspace), corner);
       }
     }
   }
@@ -300,23 +310,23 @@ TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivit
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   settings.gain_follows = true;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double at_estimate = trials.energy_of(kPaperDevice, workspace);
-  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, workspace);
+  const double at_estimate = trials.energy_of(kPaperDevice, best, workspace);
+  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace);
   EXPECT_NEAR(at_double, 4.0 * at_estimate, 1e-13 * at_double);
   settings.gain_follows = false;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_EQ(trials.energy_of(kPaperDevice, workspace), at_estimate);
+  EXPECT_EQ(trials.energy_of(kPaperDevice, best, workspace), at_estimate);
   // A filter that stays at 1.037 leaves a lasting error of 1.037 a.
-  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, workspace), at_double);
+  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace), at_double);
 }
 
 TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double before = trials.energy(3, workspace);
+  const double before = trials.energy(3, best, workspace);
   const auto refuse = [&](const ParameterBox& box) {
     settings.box = box;
-    return trials.start(paper_model(), search.result(), settings, workspace);
+    return trials.start(paper_model(), best, settings);
   };
   EXPECT_EQ(refuse({1.037, 6.0, 0.0004}), Status::kInvalidArgument);
   EXPECT_EQ(refuse({0.003, 4073.0, 0.0004}), Status::kInvalidArgument);
@@ -326,8 +336,8 @@ TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
   ASSERT_EQ(heavy.set({1.0, 4000.0, 0.9}, test::kPaperFilter, Criterion::kIntegralSquareError),
             Status::kOk);
   settings.box = {0.003, 6.0, 0.2};
-  EXPECT_EQ(trials.start(heavy, search.result(), settings, workspace), Status::kOverdamped);
-  EXPECT_EQ(trials.energy(3, workspace), before);
+  EXPECT_EQ(trials.start(heavy, best, settings), Status::kOverdamped);
+  EXPECT_EQ(trials.energy(3, best, workspace), before);
 }
 
 }  // namespace

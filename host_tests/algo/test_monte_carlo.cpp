@@ -20,6 +20,8 @@ using emax::AdaptiveResult;
 using emax::AdaptiveTrials;
 using emax::MonteCarlo;
 using emax::MonteCarloResult;
+using emax::MonteCarloStore;
+using emax::Span;
 using emax::Status;
 using emax::WichmannHill;
 
@@ -54,7 +56,24 @@ std::vector<double> values_of(std::size_t count, Function draw) {
   return values;
 }
 
-MonteCarloResult run(MonteCarlo& engine, const std::vector<double>& values, double probability) {
+/// The procedure with its memory.
+struct Engine {
+  Status start(std::uint32_t trials, double probability) {
+    return procedure.start(trials, probability, store);
+  }
+  void add(double value) { procedure.add(value, store); }
+  bool done() const { return procedure.done(); }
+  double progress() const { return procedure.progress(); }
+  std::uint32_t pass() const { return procedure.pass(); }
+  std::uint32_t next_trial() const { return procedure.next_trial(); }
+  MonteCarloResult result() const { return procedure.result(); }
+  Span<const std::uint32_t> histogram() const { return procedure.histogram(store); }
+
+  MonteCarlo procedure{};
+  MonteCarloStore store{};
+};
+
+MonteCarloResult run(Engine& engine, const std::vector<double>& values, double probability) {
   EXPECT_EQ(engine.start(static_cast<std::uint32_t>(values.size()), probability), Status::kOk);
   double progress = 0.0;
   while (!engine.done()) {
@@ -153,7 +172,7 @@ std::size_t covered(std::size_t trials, std::size_t percent) {
 
 void check(const Case& c, std::size_t percent) {
   SCOPED_TRACE(c.name + " p " + std::to_string(percent));
-  static MonteCarlo engine;
+  static Engine engine;
   const MonteCarloResult result = run(engine, c.values, static_cast<double>(percent) / 100.0);
   ASSERT_EQ(result.status, Status::kOk);
 
@@ -256,7 +275,7 @@ TEST(MonteCarlo, SortingAgreesAtMillionsOfTrials) {
 }
 
 TEST(MonteCarlo, ThreePassesForASmoothDistribution) {
-  MonteCarlo engine;
+  Engine engine;
   run(engine, values_of(200000, [](Draws& d) { return d.normal(); }), 0.95);
   EXPECT_EQ(engine.pass(), 3U);
   run(engine, std::vector<double>(5000, 0.1), 0.95);
@@ -264,7 +283,7 @@ TEST(MonteCarlo, ThreePassesForASmoothDistribution) {
 }
 
 TEST(MonteCarlo, EqualValuesHaveNoSpread) {
-  MonteCarlo engine;
+  Engine engine;
   const MonteCarloResult result = run(engine, std::vector<double>(5000, 0.1), 0.95);
   EXPECT_EQ(result.mean, 0.1);
   EXPECT_EQ(result.u, 0.0);
@@ -278,14 +297,14 @@ TEST(MonteCarlo, FirstMaximumOnTies) {
   std::vector<double> values(1000, 1.0);
   values[17] = values[400] = 2.0;
   values[30] = values[999] = 0.0;
-  MonteCarlo engine;
+  Engine engine;
   const MonteCarloResult result = run(engine, values, 0.95);
   EXPECT_EQ(result.trial_of_maximum, 17U);
   EXPECT_EQ(result.trial_of_minimum, 30U);
 }
 
 TEST(MonteCarlo, StatesOnTheWay) {
-  MonteCarlo engine;
+  Engine engine;
   EXPECT_TRUE(engine.done());
   EXPECT_EQ(engine.progress(), 0.0);
   EXPECT_EQ(engine.pass(), 0U);
@@ -309,7 +328,7 @@ TEST(MonteCarlo, StatesOnTheWay) {
 }
 
 TEST(MonteCarlo, StartRefuses) {
-  MonteCarlo engine;
+  Engine engine;
   ASSERT_EQ(engine.start(1000, 0.95), Status::kOk);
   engine.add(3.0);
   EXPECT_EQ(engine.start(999, 0.95), Status::kTooFewTrials);
@@ -322,7 +341,7 @@ TEST(MonteCarlo, StartRefuses) {
 
 TEST(MonteCarlo, ValueThatIsNotANumberEnds) {
   for (const double bad : {kNan, kInfinity, -kInfinity, 1.1e145, -1.1e145}) {
-    MonteCarlo engine;
+    Engine engine;
     ASSERT_EQ(engine.start(1000, 0.95), Status::kOk);
     for (int i = 0; i < 123; ++i) {
       engine.add(i);
@@ -342,7 +361,7 @@ TEST(MonteCarlo, TrialsThatDoNotReplayEnd) {
   const std::vector<double> values = values_of(1000, [](Draws& d) { return d.uniform(); });
   for (const std::uint32_t from_pass : {2U, 3U}) {
     for (const double other : {values[0], 2.0}) {
-      MonteCarlo engine;
+      Engine engine;
       ASSERT_EQ(engine.start(1000, 0.95), Status::kOk);
       while (!engine.done()) {
         const double value = values[engine.next_trial()];
@@ -379,7 +398,7 @@ constexpr std::size_t kTrials = 200000;
 constexpr double kRootTrials = 447.21359549995793;
 
 TEST(Clause9, SumOfFourNormals) {
-  MonteCarlo engine;
+  Engine engine;
   const MonteCarloResult result =
       run(engine,
           values_of(kTrials,
@@ -400,7 +419,7 @@ TEST(Clause9, SumOfFourNormals) {
 }
 
 TEST(Clause9, SumOfFourRectangulars) {
-  MonteCarlo engine;
+  Engine engine;
   const double half = std::sqrt(3.0);
   const auto draw = [half](Draws& d) { return emax::uniform_in(-half, half, d.uniform()); };
   const MonteCarloResult result =
@@ -423,7 +442,7 @@ TEST(Clause9, SumOfFourRectangulars) {
 
 TEST(Clause9, SquaresAboutZero) {
   // Exponential with mean 50e-6: u is the mean, kurtosis 9, the shortest interval [0, 50e-6 ln 20].
-  MonteCarlo engine;
+  Engine engine;
   const MonteCarloResult result = run(engine,
                                       values_of(kTrials,
                                                 [](Draws& d) {
@@ -446,7 +465,7 @@ TEST(Clause9, SquaresAboutZero) {
 
 TEST(Clause9, SquaresAwayFromZero) {
   // Noncentral: mean 2 s^2 + x1^2, variance 4 s^4 + 4 s^2 x1^2.
-  MonteCarlo engine;
+  Engine engine;
   const MonteCarloResult result = run(engine,
                                       values_of(kTrials,
                                                 [](Draws& d) {
@@ -488,9 +507,9 @@ TEST(NumericalTolerance, ByHand) {
 }
 
 template <typename Function>
-AdaptiveResult run_adaptive(AdaptiveTrials& adaptive, Function evaluate) {
+AdaptiveResult run_adaptive(AdaptiveTrials& adaptive, Engine& engine, Function evaluate) {
   while (!adaptive.done()) {
-    adaptive.add(evaluate(adaptive.next_trial()));
+    adaptive.add(evaluate(adaptive.next_trial(engine.procedure)), engine.procedure, engine.store);
   }
   return adaptive.result();
 }
@@ -502,11 +521,12 @@ TEST(AdaptiveTrials, AgreesWithTheRuleByHand) {
   const std::vector<double> values =
       values_of(kMaxBlocks * kBlock, [](Draws& d) { return 2.0 * d.normal(); });
   for (const std::uint32_t digits : {1U, 2U, 3U}) {
-    static MonteCarlo engine;
+    static Engine engine;
     AdaptiveTrials adaptive;
-    ASSERT_EQ(adaptive.start(engine, 0.95, digits, kMaxBlocks), Status::kOk);
+    ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, digits, kMaxBlocks),
+              Status::kOk);
     const AdaptiveResult result =
-        run_adaptive(adaptive, [&values](std::uint32_t trial) { return values[trial]; });
+        run_adaptive(adaptive, engine, [&values](std::uint32_t trial) { return values[trial]; });
     ASSERT_EQ(result.status, Status::kOk);
 
     // 7.9.4 step by step.
@@ -577,10 +597,10 @@ TEST(AdaptiveTrials, EngineServesTheWholeRunAfterwards) {
     Draws draws(std::uint64_t{2} * trial);
     return draws.normal();
   };
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
-  ASSERT_EQ(adaptive.start(engine, 0.95), Status::kOk);
-  const AdaptiveResult blocks = run_adaptive(adaptive, evaluate);
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.95), Status::kOk);
+  const AdaptiveResult blocks = run_adaptive(adaptive, engine, evaluate);
   ASSERT_EQ(engine.start(blocks.trials, 0.95), Status::kOk);
   while (!engine.done()) {
     engine.add(evaluate(engine.next_trial()));
@@ -595,26 +615,26 @@ TEST(AdaptiveTrials, EngineServesTheWholeRunAfterwards) {
 }
 
 TEST(AdaptiveTrials, StopsAtTheLimit) {
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
-  ASSERT_EQ(adaptive.start(engine, 0.95, 4, 5), Status::kOk);
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, 4, 5), Status::kOk);
   Draws draws;
   std::vector<double> values(50000);
   for (double& value : values) {
     value = draws.normal();
   }
   const AdaptiveResult result =
-      run_adaptive(adaptive, [&values](std::uint32_t trial) { return values[trial]; });
+      run_adaptive(adaptive, engine, [&values](std::uint32_t trial) { return values[trial]; });
   EXPECT_EQ(result.status, Status::kOk);
   EXPECT_FALSE(result.stabilised);
   EXPECT_EQ(result.trials, 50000U);
 }
 
 TEST(AdaptiveTrials, EqualValuesNeedTwoBlocks) {
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
-  ASSERT_EQ(adaptive.start(engine, 0.95), Status::kOk);
-  const AdaptiveResult result = run_adaptive(adaptive, [](std::uint32_t) { return 0.1; });
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.95), Status::kOk);
+  const AdaptiveResult result = run_adaptive(adaptive, engine, [](std::uint32_t) { return 0.1; });
   EXPECT_TRUE(result.stabilised);
   EXPECT_EQ(result.trials, 20000U);
   EXPECT_EQ(result.u, 0.0);
@@ -622,19 +642,19 @@ TEST(AdaptiveTrials, EqualValuesNeedTwoBlocks) {
 }
 
 TEST(AdaptiveTrials, SizeOfABlock) {
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
-  ASSERT_EQ(adaptive.start(engine, 0.999), Status::kOk);
-  EXPECT_EQ(run_adaptive(adaptive, [](std::uint32_t) { return 1.0; }).trials, 200000U);
-  ASSERT_EQ(adaptive.start(engine, 0.5), Status::kOk);
-  EXPECT_EQ(run_adaptive(adaptive, [](std::uint32_t) { return 1.0; }).trials, 20000U);
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.999), Status::kOk);
+  EXPECT_EQ(run_adaptive(adaptive, engine, [](std::uint32_t) { return 1.0; }).trials, 200000U);
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.5), Status::kOk);
+  EXPECT_EQ(run_adaptive(adaptive, engine, [](std::uint32_t) { return 1.0; }).trials, 20000U);
 }
 
 TEST(AdaptiveTrials, FailureNamesTheTrial) {
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
-  ASSERT_EQ(adaptive.start(engine, 0.95), Status::kOk);
-  const AdaptiveResult result = run_adaptive(adaptive, [](std::uint32_t trial) {
+  ASSERT_EQ(adaptive.start(engine.procedure, engine.store, 0.95), Status::kOk);
+  const AdaptiveResult result = run_adaptive(adaptive, engine, [](std::uint32_t trial) {
     return trial == 12345 ? kNan : static_cast<double>(trial % 100);
   });
   EXPECT_EQ(result.status, Status::kInvalidArgument);
@@ -642,18 +662,19 @@ TEST(AdaptiveTrials, FailureNamesTheTrial) {
 }
 
 TEST(AdaptiveTrials, StartRefuses) {
-  static MonteCarlo engine;
+  static Engine engine;
   AdaptiveTrials adaptive;
   EXPECT_TRUE(adaptive.done());
   EXPECT_EQ(adaptive.result().status, Status::kTooFewTrials);
-  adaptive.add(1.0);
+  adaptive.add(1.0, engine.procedure, engine.store);
   for (const double bad : {0.0, 1.0, -1.0, kNan, 1e-9, 1.0 - 1e-9, 1.0 - 1e-15}) {
-    EXPECT_EQ(adaptive.start(engine, bad), Status::kInvalidArgument) << bad;
+    EXPECT_EQ(adaptive.start(engine.procedure, engine.store, bad), Status::kInvalidArgument) << bad;
   }
-  EXPECT_EQ(adaptive.start(engine, 0.95, 0), Status::kInvalidArgument);
-  EXPECT_EQ(adaptive.start(engine, 0.95, 5), Status::kInvalidArgument);
-  EXPECT_EQ(adaptive.start(engine, 0.95, 2, 1), Status::kInvalidArgument);
-  EXPECT_EQ(adaptive.start(engine, 0.95, 2, 429497), Status::kInvalidArgument);
+  EXPECT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, 0), Status::kInvalidArgument);
+  EXPECT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, 5), Status::kInvalidArgument);
+  EXPECT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, 2, 1), Status::kInvalidArgument);
+  EXPECT_EQ(adaptive.start(engine.procedure, engine.store, 0.95, 2, 429497),
+            Status::kInvalidArgument);
   EXPECT_TRUE(adaptive.done());
 }
 

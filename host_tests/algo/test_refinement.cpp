@@ -97,7 +97,8 @@ TEST(Refine, NeverLosesEnergyAndEndsWithAGradientOfRounding) {
         ASSERT_EQ(model.set({1.037, 4073.0, damping}, {order, 1000.0, 1.037}, criterion),
                   Status::kOk);
         for (int run = 0; run < 20; ++run) {
-          SwitchingSignal signal = signal_of(random_times(random, 1 + random() % 20, 4e-3), 4e-3);
+          const auto switches = static_cast<std::size_t>(1 + random() % 20);
+          SwitchingSignal signal = signal_of(random_times(random, switches, 4e-3), 4e-3);
           const double before = energy(model, signal);
           const std::size_t count = signal.count();
           const Refinement result = refine(model, signal, scratch);

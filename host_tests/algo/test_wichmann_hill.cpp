@@ -24,17 +24,16 @@ WichmannHill seeded(Generator generator = Generator::k2006) {
   return result;
 }
 
-// By repeated squaring from the top bit, in 128 bits: another way than the code's.
+// By repeated squaring from the top bit: another way than the code's. Base and modulus have 31 bits.
 std::uint64_t power(std::uint64_t base, std::uint64_t exponent, std::uint64_t modulus) {
-  __extension__ typedef unsigned __int128 Wide;
-  Wide result = 1;
+  std::uint64_t result = 1;
   for (int bit = 63; bit >= 0; --bit) {
     result = result * result % modulus;
     if (((exponent >> static_cast<unsigned>(bit)) & 1U) != 0) {
       result = result * base % modulus;
     }
   }
-  return static_cast<std::uint64_t>(result);
+  return result;
 }
 
 TEST(WichmannHill, PublishedSequenceOf2006) {

@@ -143,7 +143,7 @@ class EnergyBound {
   double multiplier(std::size_t step, GridWorkspace& workspace) const noexcept;
 
  private:
-  enum class Phase : std::uint8_t { kProposal, kCheck, kDone };
+  enum class Phase : std::uint8_t { kDone, kProposal, kCheck };
 
   void sweep(const ModalModel& model, GridWorkspace& workspace) noexcept;
   void take_proposal(GridWorkspace& workspace) noexcept;

@@ -16,7 +16,7 @@ namespace emax {
 ///
 ///     guard.start(trial_count, trial_of_maximum);
 ///     while (!guard.done()) {
-///       guard.step(trials, search, workspace);
+///       guard.step(trials, best, search, workspace);
 ///     }
 ///
 /// Looked at are kSpread trials at equal distances and the one with the largest energy. For trials
@@ -34,16 +34,18 @@ class EnergyGuard {
   /// @param[in] trial_of_maximum Below it.
   void start(std::uint32_t trial_count, std::uint32_t trial_of_maximum) noexcept;
 
-  /// Does one step of one search.
+  /// Does one step of one trial or of its search.
   ///
-  /// @param trials    The trials, started; their order does not matter to their results.
+  /// @param trials    The trials, ready; their order does not matter to their results.
+  /// @param[in] best  As for the trials.
   /// @param search    Used until `done()`.
   /// @param workspace As for the search.
   /// @returns
   /// * kOk: `done()` tells whether it was the last step.
   /// * kTooManySwitches, kTooManyCells: As `EnergySearch`, whose search has failed. It counts as a
   ///   disagreement, and the next step goes on with the next trial.
-  Status step(EnergyTrials& trials, EnergySearch& search, GridWorkspace& workspace) noexcept;
+  Status step(EnergyTrials& trials, const MaximumEnergy& best, EnergySearch& search,
+              GridWorkspace& workspace) noexcept;
 
   bool done() const noexcept { return made_ == wanted_; }
   /// @returns From 0 to 1, in steps of whole searches.
@@ -55,8 +57,11 @@ class EnergyGuard {
   double largest_excess() const noexcept { return largest_excess_; }
 
  private:
+  enum class Phase : std::uint8_t { kNext, kTrial, kSearch };
+
   std::uint32_t trial_number() const noexcept;
   Status end_search(Status status) noexcept;
+  Status begin_search(const EnergyTrials& trials, EnergySearch& search) noexcept;
 
   double trial_energy_ = 0.0;
   double largest_excess_ = 0.0;
@@ -65,7 +70,7 @@ class EnergyGuard {
   std::uint32_t wanted_ = 0;
   std::uint32_t made_ = 0;
   std::uint32_t disagreements_ = 0;
-  bool searching_ = false;
+  Phase phase_ = Phase::kNext;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergyGuard>);

@@ -5,44 +5,80 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/capacity.hpp"
 #include "emax/fixed_point.hpp"
 #include "emax/modal_model.hpp"
+#include "emax/monte_carlo.hpp"
 #include "emax/phi_buffer.hpp"
 #include "emax/phi_operator.hpp"
 #include "emax/refinement.hpp"
+#include "emax/signs.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 #include "emax/switching_signal.hpp"
 
 namespace emax {
 
-/// The workspace has room for the packed triangle of Phi with this many cells.
-inline constexpr std::size_t kPhiCells = 128;
-
 /// Memory for signals: what every search and every trial needs while it runs, and nothing
-/// afterwards. 81 KiB. The product, a refinement and a bound are never needed together and share
-/// their place.
+/// afterwards. 68 KiB. The product, a refinement and a bound are never needed together and share
+/// their place. While trials run, a part of it is the store of the Monte Carlo procedure.
 class GridWorkspace {
  public:
-  /// For a bound, in place of a product.
-  Span<double> numbers() noexcept { return Span<double>(numbers_); }
-  /// Phi x, one number per cell.
-  Span<double> product(std::size_t cells) noexcept { return Span<double>(numbers_).first(cells); }
+  /// As much of a product as there is room for beside a `MonteCarloStore`.
+  static constexpr std::size_t kMaxTrialCells = kRefinementScratch;
+
+  /// Makes all of the memory one place for numbers again; what was in it is lost. Searches and
+  /// bounds begin with it.
+  void share_nothing() noexcept {
+    has_store_ = false;
+    memory_.numbers[0] = 0.0;  // From here on this is the member of the union that is alive.
+  }
+  /// Sets a part aside as the store, until `share_nothing()`.
+  void share_with_store() noexcept {
+    has_store_ = true;
+    memory_.shared.refinement[0] = 0.0;
+  }
+  /// After `share_with_store()`.
+  MonteCarloStore& store() noexcept { return memory_.shared.store; }
+
+  /// For a bound, in place of a product; not beside a store.
+  Span<double> numbers() noexcept { return Span<double>(memory_.numbers); }
+  /// Phi x, one number per cell; beside a store at most kMaxTrialCells.
+  Span<double> product(std::size_t cells) noexcept { return all().first(cells); }
   /// For a refinement, when the product is not needed any more.
-  Span<double> refinement() noexcept { return Span<double>(numbers_).first(kRefinementScratch); }
-  Span<std::int8_t> signs(std::size_t cells) noexcept {
-    return Span<std::int8_t>(signs_).first(cells);
+  Span<double> refinement() noexcept { return all().first(kRefinementScratch); }
+  Signs signs(std::size_t cells) noexcept { return Signs(Span<std::uint32_t>(signs_), cells); }
+  Signs best_signs(std::size_t cells) noexcept {
+    return Signs(Span<std::uint32_t>(best_signs_), cells);
   }
-  Span<std::int8_t> best_signs(std::size_t cells) noexcept {
-    return Span<std::int8_t>(best_signs_).first(cells);
-  }
+  /// The signal that is being refined.
+  SwitchingSignal& signal() noexcept { return signal_; }
 
  private:
-  static_assert(packed_size(kPhiCells) >= kMaxCells);
-  static_assert(packed_size(kPhiCells) >= kRefinementScratch);
-  double numbers_[packed_size(kPhiCells)] = {};
-  std::int8_t signs_[kMaxCells] = {};
-  std::int8_t best_signs_[kMaxCells] = {};
+  static_assert(packed_size(kPhiCells) >= kMaxCells, "EMAX_PHI_CELLS is too small for EMAX_MAX_CELLS");
+  static_assert(packed_size(kPhiCells) >= kRefinementScratch,
+                "EMAX_PHI_CELLS is too small for EMAX_MAX_SWITCHES");
+  // No initialisers, so that an assignment to a member brings it to life.
+  struct Shared {
+    double refinement[kRefinementScratch];
+    MonteCarloStore store;
+  };
+  union Memory {
+    double numbers[packed_size(kPhiCells)];
+    Shared shared;
+  };
+  static_assert(!kHasDefaultCapacities ||
+                sizeof(Shared) <= sizeof(double) * packed_size(kPhiCells));
+
+  Span<double> all() noexcept {
+    return has_store_ ? Span<double>(memory_.shared.refinement) : Span<double>(memory_.numbers);
+  }
+
+  Memory memory_ = {};
+  std::uint32_t signs_[sign_words(kMaxCells)] = {};
+  std::uint32_t best_signs_[sign_words(kMaxCells)] = {};
+  SwitchingSignal signal_ = {};
+  bool has_store_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<GridWorkspace>);
@@ -70,15 +106,73 @@ struct MaximumEnergy {
   bool at_rest = false;        ///< That fixed point came to rest.
 };
 
+/// Makes it as before a search; nothing of its 2 KiB passes over the stack.
+void clear(MaximumEnergy& maximum) noexcept;
+
 /// The number of cells of the grid of `Method::kBest`: cells of at most 1/(12 f) with f the larger
 /// of f0 and fc, so that the resonance is seen, and at least 24 of them.
 ///
 /// @returns kMaxCells + 1 if it takes more than kMaxCells.
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
 
+/// The number of cells that a search with these settings lays out.
+///
+/// @returns kMaxCells + 1 if it takes more than kMaxCells.
+std::size_t search_cells(const ModalModel& model, const SearchSettings& settings) noexcept;
+
+/// Turns the signs of one stretch of cells, up to PhiOperator::kMaxPulse of equal sign, if that
+/// gains energy, in short steps.
+///
+///     turn.start();
+///     while (!turn.done()) {
+///       turn.step(phi, signs, product);
+///     }
+///
+/// Turning the cells i to j of sign c changes the energy by 4 (their pulse's energy - c sum of
+/// (Phi x)). The stretch with the largest gain is taken when the pulses' energies are set to their
+/// limits, which are exact far from T; if that one does not gain, the one with the largest gain.
+/// Gains below 1e-9 of the energy are left to the refinement.
+class PulseTurn {
+ public:
+  void start() noexcept;
+
+  /// Looks at all stretches with the pulses' limits, or at some with their energies.
+  ///
+  /// @param[in,out] signs   The pattern.
+  /// @param[in]     product Phi times the pattern; no longer so if a stretch has been turned.
+  /// @returns What it has cost, in cells of a product.
+  std::size_t step(const PhiOperator& phi, Signs signs, Span<const double> product) noexcept;
+
+  bool done() const noexcept { return phase_ == Phase::kDone; }
+  /// @returns With `done()`, whether a stretch was turned.
+  bool turned() const noexcept { return best_.width != 0; }
+
+ private:
+  enum class Phase : std::uint8_t { kDone, kLimits, kEnergies };
+
+  /// A stretch of cells, and a quarter of what turning it adds to the energy.
+  struct Pulse {
+    std::size_t cell = 0;
+    std::size_t width = 0;
+    double gain = 0.0;
+  };
+
+  std::size_t look_at_limits(const PhiOperator& phi, Signs signs,
+                             Span<const double> product) noexcept;
+  std::size_t look_at_energies(const PhiOperator& phi, Signs signs,
+                               Span<const double> product) noexcept;
+  void turn_best(Signs signs) noexcept;
+
+  Pulse best_ = {};
+  std::size_t next_ = 0;  // The cell whose pulses come next.
+  Phase phase_ = Phase::kDone;
+};
+
+static_assert(std::is_trivially_copyable_v<PulseTurn>);
+
 /// Searches in short steps, so that nothing else has to wait for it.
 ///
-///     search.start(model, settings, workspace);
+///     search.start(model, settings);
 ///     while (!search.done()) {
 ///       search.step(model, workspace);
 ///     }
@@ -87,12 +181,12 @@ std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
 /// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs.
 /// (Random signs are the best starts: the first steps of the fixed point leave in them what the
 /// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
-/// gains most is turned (`turn_best_pulse()`) and the fixed point runs again, until no pulse gains.
+/// gains most is turned (`PulseTurn`) and the fixed point runs again, until no pulse gains.
 /// A pulse inside a run of equal signs is a new pair of switches, one that fills a run takes a pair
 /// away, and one at the end of a run moves a switch. A climb that ends within 1 % of the highest
 /// one so far is refined in continuous time. At last the best one goes back to the grid, which may
 /// have gains to offer again now that its switches have moved, up to 4 times. Of equals the first
-/// one wins, so the result is the same on every target. 8 KiB beside the workspace.
+/// one wins, so the result is the same on every target. 2.6 KiB beside the workspace.
 ///
 /// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
 /// few switches are best, and up to 250 where it is a hundred switches; a product costs 40 to 50
@@ -105,8 +199,8 @@ class EnergySearch {
   static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods + kRandomStarts;
   static constexpr std::size_t kPolishings = 4;
 
-  /// Lays out the grid. Model, settings and workspace must stay as they are until the search is
-  /// done; the workspace holds a signal in between.
+  /// Lays out the grid. Model and settings must stay as they are until the search is done, and
+  /// nobody else must work in the workspace meanwhile.
   ///
   /// @returns
   /// * kOk: Ready to `step()`.
@@ -114,17 +208,19 @@ class EnergySearch {
   ///   duration, or no iteration or more than kMaxIterations.
   /// * kTooManyCells: The grid would need more than kMaxCells cells: shorten T, or for kPaper take
   ///   a longer step.
-  Status start(const ModalModel& model, const SearchSettings& settings,
-               GridWorkspace& workspace) noexcept;
+  Status start(const ModalModel& model, const SearchSettings& settings) noexcept;
 
-  /// Takes a starting signal to where the fixed point rests, or turns one pulse and lets the fixed
-  /// point run again, or refines what a climb has ended on.
+  /// Makes products with Phi, looks for pulses and refines, until it has done as much as
+  /// kWorkPerStep cells of products are.
   ///
+  /// @param[out] trace E_0, E_1, ... of the fixed point, for a = 1, as far as it has room; may be
+  ///   empty. The same memory in each step. At the end the whole run of kPaper, or the last one of
+  ///   kBest.
   /// @returns
   /// * kOk: `done()` tells whether it was the last step.
   /// * kTooManySwitches: With the last step: the best signal has more than kMaxSwitches switches.
   ///   `result()` is then the best of those that have fewer, which is not the maximum: shorten T.
-  Status step(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  Status step(const ModalModel& model, GridWorkspace& workspace, Span<double> trace = {}) noexcept;
 
   bool done() const noexcept { return climbs_made_ == climbs_; }
   /// @returns From 0 to 1.
@@ -132,24 +228,36 @@ class EnergySearch {
   /// @returns The best so far; with `done()`, the result.
   const MaximumEnergy& result() const noexcept { return result_; }
 
-  /// E_0, E_1, ... of the fixed point, for a = 1: the whole run of kPaper, or the last one of
-  /// kBest; the first kTraceLength of them.
-  Span<const double> trace() const noexcept { return Span<const double>(trace_, trace_count_); }
-  static constexpr std::size_t kTraceLength = 64;
+  /// The number of energies in the trace.
+  std::size_t trace_count() const noexcept { return trace_count_; }
+
+  /// In cells of products: at the end of a step one product more may have been made.
+  static constexpr std::size_t kWorkPerStep = 4096;
 
  private:
-  void set_start(Span<std::int8_t> signs, Span<double> product) noexcept;
-  void set_to_result(Span<std::int8_t> signs) const noexcept;
-  bool climb(GridWorkspace& workspace) noexcept;
+  enum class Phase : std::uint8_t { kStart, kClimb, kTurn, kRefine };
+
+  std::size_t step_once(const PhiOperator& phi, const ModalModel& model, GridWorkspace& workspace,
+                        Span<double> trace) noexcept;
+  void begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept;
+  void set_start(const PhiOperator& phi, Signs signs, Span<double> product) noexcept;
+  void set_to_result(Signs signs) const noexcept;
+  void run_fixed_point() noexcept;
+  void end_fixed_point(std::size_t room) noexcept;
+  std::size_t step_turn(const PhiOperator& phi, const ModalModel& model,
+                        GridWorkspace& workspace) noexcept;
   void end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  void end_refinement(const SwitchingSignal& refined) noexcept;
+  void next_climb() noexcept;
   bool is_worth_refining(double energy) const noexcept;
-  void take(double energy) noexcept;
+  void take(const SwitchingSignal& signal, double energy) noexcept;
+  bool is_polishing() const noexcept { return climbs_made_ >= kStarts; }
 
   MaximumEnergy result_ = {};
   SearchSettings settings_ = {};
-  PhiOperator operator_ = {};
-  SwitchingSignal candidate_ = {};
-  double trace_[kTraceLength] = {};
+  FixedPoint fixed_point_ = {};
+  PulseTurn pulse_turn_ = {};
+  Refiner refiner_ = {};
   double ends_[kStarts] = {};  // What each start has climbed to.
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
@@ -161,26 +269,12 @@ class EnergySearch {
   std::size_t cells_ = 0;
   std::size_t iterations_ = 0;  // Of the first fixed point of this climb.
   std::size_t turns_ = 0;
+  Phase phase_ = Phase::kStart;
   bool at_rest_ = false;
-  bool climbing_ = false;
   bool has_result_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);
-
-/// Turns the signs of one stretch of cells, up to PhiOperator::kMaxPulse of equal sign, if that
-/// gains energy.
-///
-/// Turning the cells i to j of sign c changes the energy by 4 (their pulse's energy - c sum of
-/// (Phi x)). The stretch with the largest gain is taken when the pulses' energies are set to their
-/// limits, which are exact far from T; if that one does not gain, the one with the largest gain.
-/// Gains below 1e-9 of the energy are left to the refinement. kMaxPulse sums per cell.
-///
-/// @param[in,out] signs   The pattern.
-/// @param[in]     product Phi times the pattern; no longer so if a stretch has been turned.
-/// @returns Whether a stretch was turned.
-bool turn_best_pulse(const PhiOperator& phi, Span<std::int8_t> signs,
-                     Span<const double> product) noexcept;
 
 /// The shift c with which the fixed point climbs for either criterion: 0 for the integral-square
 /// error, and for the energy difference the filter's gain squared times the width of a cell, which

@@ -52,7 +52,16 @@ struct TrialSettings {
 /// Phi's first column.
 ///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
-/// estimate's S and multiplied by the square of their ratio. 16 KiB beside the workspace.
+/// estimate's S and multiplied by the square of their ratio.
+///
+///     trials.start(at_estimate, best, settings);
+///     while (!trials.ready()) {
+///       trials.prepare(best, workspace);
+///     }
+///     const double energy = trials.energy(0, best, workspace);
+///
+/// 7.6 KiB beside the workspace and the signal that is best at the estimate, which must stay as
+/// they are.
 class EnergyTrials {
  public:
   /// A signal with more switches than this is refined in each trial.
@@ -63,27 +72,46 @@ class EnergyTrials {
 
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
   /// @param[in] best        The search's result at the estimate, with the same search settings.
-  /// @param     workspace   Used while this call runs.
   /// @returns
-  /// * kOk: Ready.
+  /// * kOk: `prepare()` until `ready()`.
   /// * kOverdamped, kInvalidArgument: A half-width below 0 or not a number, a covariance that is
   ///   not symmetric and positive semidefinite, or a range (for the normal distribution, six
   ///   standard deviations) that leaves what a device may be (S, f0 above 0; damping from 1e-4 to
   ///   below 1).
-  /// * kTooManyCells: As `EnergySearch::start()`.
-  /// Nothing has changed unless it is kOk. At most 17 refinements.
+  /// * kTooManyCells: kPaper, and more cells than there is room for beside a store:
+  ///   GridWorkspace::kMaxTrialCells.
+  /// Nothing has changed unless it is kOk.
   Status start(const ModalModel& at_estimate, const MaximumEnergy& best,
-               const TrialSettings& settings, GridWorkspace& workspace) noexcept;
+               const TrialSettings& settings) noexcept;
+
+  /// A step of one of at most 17 refinements, with all of which the quadratic is laid and looked
+  /// at.
+  void prepare(const MaximumEnergy& best, GridWorkspace& workspace) noexcept;
+  bool ready() const noexcept { return ready_; }
 
   /// @returns The device of one trial.
   Accelerometer device(std::uint32_t trial) noexcept;
 
-  /// @returns The largest energy of one trial, for a = 1.
-  double energy(std::uint32_t trial, GridWorkspace& workspace) noexcept;
+  /// Begins the trial of a device; one that predicts is then done already.
+  void begin(const Accelerometer& device, const MaximumEnergy& best,
+             GridWorkspace& workspace) noexcept;
+  /// A step of its refinement, or one product with Phi of the paper's method.
+  void step(GridWorkspace& workspace) noexcept;
+  bool done() const noexcept { return done_; }
+  /// @returns With `done()`, the largest energy of the device, for a = 1.
+  double energy() const noexcept { return scale_ * energy_; }
+  /// What that energy has been multiplied by.
+  double scale() const noexcept { return scale_; }
+  /// @returns What `begin()` or a `step()` costs at most, in cells of a product.
+  std::size_t work(const MaximumEnergy& best) const noexcept;
+
+  /// @returns The largest energy of one trial, for a = 1, all its steps at once.
+  double energy(std::uint32_t trial, const MaximumEnergy& best, GridWorkspace& workspace) noexcept;
 
   /// @returns The largest energy of a given device, found as in a trial: of a corner of the box,
   ///   for one.
-  double energy_of(const Accelerometer& device, GridWorkspace& workspace) noexcept;
+  double energy_of(const Accelerometer& device, const MaximumEnergy& best,
+                   GridWorkspace& workspace) noexcept;
 
   /// The model of the device last computed; at the estimate's sensitivity if the gain follows.
   const ModalModel& model() const noexcept { return model_; }
@@ -91,12 +119,16 @@ class EnergyTrials {
   /// follows.
   double scale_of(const Accelerometer& device) const noexcept;
 
-  const SearchSettings& search_settings() const noexcept { return settings_.search; }
-  /// @returns Whether trials predict their switching times.
+  const SearchSettings& search_settings() const noexcept { return search_; }
+  /// @returns With `ready()`, whether trials predict their switching times.
   bool predicts() const noexcept { return predicts_; }
 
  private:
   static constexpr std::size_t kTerms = 9;  // Linear, squares, products.
+  // Both ends of each axis, the positive ends of each two axes together, the corners.
+  static constexpr std::size_t kEnds = 6;
+  static constexpr std::size_t kNodes = 9;
+  static constexpr std::size_t kPlaces = 17;
 
   /// Deviations of S, f0 and beta in units that make them independent, as parts of the range.
   struct Place {
@@ -111,26 +143,35 @@ class EnergyTrials {
   Accelerometer device_at(const double (&z)[3]) const noexcept;
   Place place_of(const Accelerometer& device) const noexcept;
   void set_model(const Accelerometer& device) noexcept;
-  bool predict(const double (&part)[3]) noexcept;
-  bool refine_at(const double (&part)[3], GridWorkspace& workspace) noexcept;
-  bool lay_quadratic(GridWorkspace& workspace) noexcept;
-  bool holds_at_corners(GridWorkspace& workspace) noexcept;
-  double best_energy(const Accelerometer& device, GridWorkspace& workspace) noexcept;
-  double paper_energy(GridWorkspace& workspace) noexcept;
+  bool predict(const double (&part)[3], const SwitchingSignal& best,
+               SwitchingSignal& signal) const noexcept;
+  static Place place_number(std::size_t index) noexcept;
+  bool take_place(const Place& place, const SwitchingSignal& best,
+                  SwitchingSignal& refined) noexcept;
+  void take_node(const SwitchingSignal& best, const SwitchingSignal& refined) noexcept;
 
   ModalModel model_ = {};
-  PhiOperator phi_ = {};
-  SwitchingSignal best_signal_ = {};
-  SwitchingSignal signal_ = {};
   double terms_[kTerms][kMaxPredicted] = {};
-  TrialSettings settings_ = {};
+  SearchSettings search_ = {};
+  ParameterBox box_ = {};
+  Refiner refiner_ = {};
+  FixedPoint fixed_point_ = {};
   Accelerometer estimate_ = {};
   double factor_[3][3] = {};  // Lower triangle: a deviation of 1 of each independent unit.
   double range_ = 0.0;        // In these units, the part within which times are predicted.
+  double energy_ = 0.0;       // Of the trial that is done.
+  double scale_ = 0.0;
+  WichmannHill first_generator_ = {};
   WichmannHill generator_ = {};
   std::uint32_t next_trial_ = 0;
   std::size_t cells_ = 0;
+  std::size_t places_ = 0;  // Prepared.
+  Distribution distribution_ = {};
+  bool gain_follows_ = false;
+  bool refining_ = false;
+  bool ready_ = false;
   bool predicts_ = false;
+  bool done_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergyTrials>);
