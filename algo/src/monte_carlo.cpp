@@ -73,7 +73,8 @@ double numerical_tolerance(double u, std::uint32_t significant_digits) noexcept 
   return 0.5 / inverse_unit;
 }
 
-Status MonteCarlo::start(std::uint32_t trials, double probability) noexcept {
+Status MonteCarlo::start(std::uint32_t trials, double probability,
+                         MonteCarloStore& store) noexcept {
   if (!(probability > 0.0) || !(probability < 1.0)) {
     return Status::kInvalidArgument;
   }
@@ -102,14 +103,14 @@ Status MonteCarlo::start(std::uint32_t trials, double probability) noexcept {
   passes_left_ = 3;
   pass_ = 1;
   failed_ = false;
-  for (std::uint32_t& bin : bins_) {
+  for (std::uint32_t& bin : store.bins) {
     bin = 0;
   }
   stage_ = Stage::kRange;
   return Status::kOk;
 }
 
-void MonteCarlo::add(double value) noexcept {
+void MonteCarlo::add(double value, MonteCarloStore& store) noexcept {
   if (done()) {
     return;
   }
@@ -123,13 +124,13 @@ void MonteCarlo::add(double value) noexcept {
     fail();
     return;
   } else if (stage_ == Stage::kHistogram) {
-    add_to_histogram(value);
+    add_to_histogram(value, store);
   } else {
-    add_to_targets(value);
+    add_to_targets(value, store);
   }
   ++trial_;
   if (trial_ == trials_) {
-    end_pass();
+    end_pass(store);
   }
 }
 
@@ -153,58 +154,59 @@ void MonteCarlo::add_to_range(double value) noexcept {
 
 // The pool is free in this pass: it counts the values in the upper half of each bin, two counts to
 // a place.
-void MonteCarlo::add_to_histogram(double value) noexcept {
+void MonteCarlo::add_to_histogram(double value, MonteCarloStore& store) noexcept {
   const std::size_t half = half_bin_of(value);
   const std::size_t bin = half / 2;
-  ++bins_[bin];
+  ++store.bins[bin];
   if (half % 2 != 0) {
-    pool_[bin / 2] += std::uint64_t{1} << (bin % 2 * 32);
+    store.pool[bin / 2] += std::uint64_t{1} << (bin % 2 * 32);
   }
 }
 
-std::uint32_t MonteCarlo::count_of_half_bin(std::size_t half) const noexcept {
+std::uint32_t MonteCarlo::count_of_half_bin(std::size_t half,
+                                            const MonteCarloStore& store) noexcept {
   const std::size_t bin = half / 2;
-  const auto upper = static_cast<std::uint32_t>(pool_[bin / 2] >> (bin % 2 * 32));
-  return half % 2 != 0 ? upper : bins_[bin] - upper;
+  const auto upper = static_cast<std::uint32_t>(store.pool[bin / 2] >> (bin % 2 * 32));
+  return half % 2 != 0 ? upper : store.bins[bin] - upper;
 }
 
-void MonteCarlo::add_to_targets(double value) noexcept {
+void MonteCarlo::add_to_targets(double value, MonteCarloStore& store) noexcept {
   const std::uint64_t key = key_of(value);
   for (Target& target : targets_) {
     if (target.found || key < target.low_key || key > target.high_key) {
       continue;
     }
     if (!target.collecting) {
-      ++pool_[target.offset + ((key - target.low_key) >> target.shift)];
+      ++store.pool[target.offset + ((key - target.low_key) >> target.shift)];
     } else if (target.filled < target.inside) {
-      pool_[target.offset + target.filled] = key;
+      store.pool[target.offset + target.filled] = key;
     }
     ++target.filled;
   }
 }
 
-void MonteCarlo::end_pass() noexcept {
+void MonteCarlo::end_pass(MonteCarloStore& store) noexcept {
   progress_base_ += (1.0 - progress_base_) / static_cast<double>(passes_left_);
   if (stage_ == Stage::kRange) {
     if (minimum_ == maximum_) {
-      bins_[0] = trials_;
+      store.bins[0] = trials_;
       finish();
       return;
     }
-    for (std::uint64_t& place : pool_) {
+    for (std::uint64_t& place : store.pool) {
       place = 0;
     }
     stage_ = Stage::kHistogram;
     passes_left_ = 2;
   } else {
     if (stage_ == Stage::kHistogram) {
-      aim();
+      aim(store);
       stage_ = Stage::kSelect;
-    } else if (!settle_targets()) {
+    } else if (!settle_targets(store)) {
       fail();
       return;
     }
-    if (!plan_targets()) {
+    if (!plan_targets(store)) {
       finish();
       return;
     }
@@ -214,14 +216,14 @@ void MonteCarlo::end_pass() noexcept {
 }
 
 // The histogram is complete: names the four order statistics and the bins they lie in.
-void MonteCarlo::aim() noexcept {
+void MonteCarlo::aim(const MonteCarloStore& store) noexcept {
   const std::uint32_t outside = trials_ - covered_;
   const std::uint32_t symmetric = outside / 2U + outside % 2U;
-  const std::uint32_t shortest = shortest_order();
-  set_target(0, symmetric);
-  set_target(1, symmetric + covered_);
-  set_target(2, shortest);
-  set_target(3, shortest + covered_);
+  const std::uint32_t shortest = shortest_order(store);
+  set_target(0, symmetric, store);
+  set_target(1, symmetric + covered_, store);
+  set_target(2, shortest, store);
+  set_target(3, shortest + covered_, store);
 }
 
 std::size_t MonteCarlo::half_bin_of(double value) const noexcept {
@@ -247,11 +249,12 @@ std::uint64_t MonteCarlo::first_key_of_half_bin(std::size_t half) const noexcept
   return low;
 }
 
-void MonteCarlo::set_target(std::size_t index, std::uint32_t order) noexcept {
+void MonteCarlo::set_target(std::size_t index, std::uint32_t order,
+                            const MonteCarloStore& store) noexcept {
   std::uint32_t rank = order - 1;
   std::size_t half = 0;
-  while (rank >= count_of_half_bin(half)) {
-    rank -= count_of_half_bin(half);
+  while (rank >= count_of_half_bin(half, store)) {
+    rank -= count_of_half_bin(half, store);
     ++half;
   }
   Target& target = targets_[index];
@@ -259,13 +262,13 @@ void MonteCarlo::set_target(std::size_t index, std::uint32_t order) noexcept {
   target.low_key = first_key_of_half_bin(half);
   target.high_key = first_key_of_half_bin(half + 1) - 1;
   target.rank = rank;
-  target.inside = count_of_half_bin(half);
+  target.inside = count_of_half_bin(half, store);
 }
 
 // The r for which y_(r) and y_(r+q) are the fewest half bins apart; among those, the closest if the
 // values of each were spread evenly in it. While both ends stay in theirs that distance is linear
 // in r, so only the ends of such stretches are looked at.
-std::uint32_t MonteCarlo::shortest_order() const noexcept {
+std::uint32_t MonteCarlo::shortest_order(const MonteCarloStore& store) const noexcept {
   const std::uint32_t last = trials_ - covered_;
   std::size_t i = 0;
   std::size_t j = 0;
@@ -276,16 +279,16 @@ std::uint32_t MonteCarlo::shortest_order() const noexcept {
   double best_distance = 0.0;
   std::uint32_t r = 1;
   while (r <= last) {
-    while (r - below_i > count_of_half_bin(i)) {
-      below_i += count_of_half_bin(i);
+    while (r - below_i > count_of_half_bin(i, store)) {
+      below_i += count_of_half_bin(i, store);
       ++i;
     }
-    while (r + covered_ - below_j > count_of_half_bin(j)) {
-      below_j += count_of_half_bin(j);
+    while (r + covered_ - below_j > count_of_half_bin(j, store)) {
+      below_j += count_of_half_bin(j, store);
       ++j;
     }
-    const std::uint32_t inside_i = count_of_half_bin(i);
-    const std::uint32_t inside_j = count_of_half_bin(j);
+    const std::uint32_t inside_i = count_of_half_bin(i, store);
+    const std::uint32_t inside_j = count_of_half_bin(j, store);
     const std::uint32_t left_i = below_i + inside_i - r;
     const std::uint32_t left_j = below_j + inside_j - covered_ - r;
     const std::uint32_t stretch = std::min(std::min(left_i, left_j), last - r);
@@ -308,7 +311,7 @@ std::uint32_t MonteCarlo::shortest_order() const noexcept {
 }
 
 // Shares the pool out. False if nothing is left to look for.
-bool MonteCarlo::plan_targets() noexcept {
+bool MonteCarlo::plan_targets(MonteCarloStore& store) noexcept {
   std::uint64_t total = 0;
   bool pending = false;
   for (Target& target : targets_) {
@@ -337,7 +340,7 @@ bool MonteCarlo::plan_targets() noexcept {
       ++target.shift;
     }
     for (std::size_t i = 0; i < kSubBins; ++i) {
-      pool_[offset + i] = 0;
+      store.pool[offset + i] = 0;
     }
     offset += kSubBins;
   }
@@ -346,7 +349,7 @@ bool MonteCarlo::plan_targets() noexcept {
 
 // Narrows each target to what the pass has shown. False if there were not as many values as in the
 // pass before.
-bool MonteCarlo::settle_targets() noexcept {
+bool MonteCarlo::settle_targets(MonteCarloStore& store) noexcept {
   for (Target& target : targets_) {
     if (target.found) {
       continue;
@@ -354,7 +357,7 @@ bool MonteCarlo::settle_targets() noexcept {
     if (target.filled != target.inside) {
       return false;
     }
-    std::uint64_t* const part = pool_ + target.offset;
+    std::uint64_t* const part = store.pool + target.offset;
     if (target.collecting) {
       std::make_heap(part, part + target.inside);
       std::sort_heap(part, part + target.inside);
@@ -427,14 +430,14 @@ double MonteCarlo::progress() const noexcept {
   return progress_base_ + (1.0 - progress_base_) * share / static_cast<double>(passes_left_);
 }
 
-Span<const std::uint32_t> MonteCarlo::histogram() const noexcept {
+Span<const std::uint32_t> MonteCarlo::histogram(const MonteCarloStore& store) const noexcept {
   if (stage_ != Stage::kDone || failed_) {
     return {};
   }
-  return Span<const std::uint32_t>(bins_);
+  return Span<const std::uint32_t>(store.bins);
 }
 
-Status AdaptiveTrials::start(MonteCarlo& engine, double probability,
+Status AdaptiveTrials::start(MonteCarlo& engine, MonteCarloStore& store, double probability,
                              std::uint32_t significant_digits, std::uint32_t max_blocks) noexcept {
   if (!(probability > 0.0) || !(probability < 1.0) || significant_digits < 1 ||
       significant_digits > 4 || max_blocks < 2) {
@@ -448,11 +451,10 @@ Status AdaptiveTrials::start(MonteCarlo& engine, double probability,
   if (std::uint64_t{block_size} * max_blocks > 0xffffffffU) {
     return Status::kInvalidArgument;
   }
-  if (engine.start(block_size, probability) != Status::kOk) {
+  if (engine.start(block_size, probability, store) != Status::kOk) {
     return Status::kInvalidArgument;
   }
   *this = AdaptiveTrials();
-  engine_ = &engine;
   probability_ = probability;
   block_size_ = block_size;
   max_blocks_ = max_blocks;
@@ -461,22 +463,22 @@ Status AdaptiveTrials::start(MonteCarlo& engine, double probability,
   return Status::kOk;
 }
 
-std::uint32_t AdaptiveTrials::next_trial() const noexcept {
-  return running_ ? blocks_ * block_size_ + engine_->next_trial() : 0;
+std::uint32_t AdaptiveTrials::next_trial(const MonteCarlo& engine) const noexcept {
+  return running_ ? blocks_ * block_size_ + engine.next_trial() : 0;
 }
 
-void AdaptiveTrials::add(double value) noexcept {
+void AdaptiveTrials::add(double value, MonteCarlo& engine, MonteCarloStore& store) noexcept {
   if (!running_) {
     return;
   }
-  engine_->add(value);
-  if (engine_->done()) {
-    end_block();
+  engine.add(value, store);
+  if (engine.done()) {
+    end_block(engine, store);
   }
 }
 
-void AdaptiveTrials::end_block() noexcept {
-  const MonteCarloResult block = engine_->result();
+void AdaptiveTrials::end_block(MonteCarlo& engine, MonteCarloStore& store) noexcept {
+  const MonteCarloResult block = engine.result();
   if (block.status != Status::kOk) {
     failed_ = true;
     failed_trial_ = blocks_ * block_size_ + block.failed_trial;
@@ -497,7 +499,7 @@ void AdaptiveTrials::end_block() noexcept {
   }
   stabilised_ = blocks_ > 1 && stable();
   if (stabilised_ || blocks_ == max_blocks_ ||
-      engine_->start(block_size_, probability_) != Status::kOk) {
+      engine.start(block_size_, probability_, store) != Status::kOk) {
     running_ = false;
   }
 }

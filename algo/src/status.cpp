@@ -92,6 +92,12 @@ const char* explain(Status status) noexcept {
     case Status::kNotProven:
       return "No upper bound passed its check for this device and time; shorten T, or use the "
              "energy found without a bound.";
+    case Status::kNothingStored:
+      return "Nothing is stored there, or a power cut or a damage has left nothing whole; store it "
+             "first.";
+    case Status::kUnknownRecord:
+      return "What is stored there is of another version or does not fit this instrument; set it "
+             "anew and store it again.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";
 }

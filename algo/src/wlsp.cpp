@@ -320,6 +320,9 @@ Status WlspDraws::start(const Wlsp& fit, std::uint32_t draws,
   if (fit.result().status != Status::kOk) {
     return fit.result().status;
   }
+  if (fit.response().size() == 0) {
+    return Status::kTooFewPoints;
+  }
   if (draws < 2) {
     return Status::kInvalidArgument;
   }

@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/capacity.hpp"
 #include "emax/complex.hpp"
 #include "emax/span.hpp"
 #include "emax/status.hpp"
 #include "emax/wichmann_hill.hpp"
 
 namespace emax {
-
-inline constexpr std::size_t kMaxPoints = 64;
 
 /// One point of K(j 2 pi f) with standard uncertainties.
 ///

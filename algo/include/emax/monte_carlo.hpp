@@ -42,11 +42,20 @@ struct MonteCarloResult {
   std::uint32_t failed_trial = 0;  ///< With kInvalidArgument: the trial that ended the procedure.
 };
 
+/// Memory for `MonteCarlo`: 16 KiB. No initialisers, as it may share its place with other things.
+struct MonteCarloStore {
+  static constexpr std::size_t kBins = 2048;
+  static constexpr std::size_t kPoolSize = 1024;
+
+  std::uint64_t pool[kPoolSize];
+  std::uint32_t bins[kBins];
+};
+
 /// Takes the values of M trials, several times over, and keeps none.
 ///
-///     monte_carlo.start(trials, probability);
+///     monte_carlo.start(trials, probability, store);
 ///     while (!monte_carlo.done()) {
-///       monte_carlo.add(evaluate(monte_carlo.next_trial()));
+///       monte_carlo.add(evaluate(monte_carlo.next_trial()), store);
 ///     }
 ///
 /// Trials replay: `evaluate(t)` gives the same value each time it is asked for trial t, so no store
@@ -69,25 +78,26 @@ struct MonteCarloResult {
 /// y_(s) to y_(s+q) is shorter by more than one bin width, (maximum - minimum)/kBins. Where the
 /// values are many per bin and vary smoothly, the difference is a small part of that.
 ///
-/// 16.3 KiB. Per value: one division in the first pass, one in the second, up to 8 comparisons in
-/// the others. At the end of the second pass up to 16 kBins divisions, at the end of the others
-/// sorting of up to kPoolSize values.
+/// 0.3 KiB beside the store, which is the same in each call. Per value: one division in the first
+/// pass, one in the second, up to 8 comparisons in the others. At the end of the second pass up to
+/// 16 kBins divisions, at the end of the others sorting of up to kPoolSize values.
 class MonteCarlo {
  public:
-  static constexpr std::size_t kBins = 2048;
-  static constexpr std::size_t kPoolSize = 1024;
+  static constexpr std::size_t kBins = MonteCarloStore::kBins;
+  static constexpr std::size_t kPoolSize = MonteCarloStore::kPoolSize;
 
   /// Starts over.
   ///
-  /// @param[in] trials      M, kMinTrials or more.
-  /// @param[in] probability p inside (0, 1).
+  /// @param[in]  trials      M, kMinTrials or more.
+  /// @param[in]  probability p inside (0, 1).
+  /// @param[out] store       Nobody else's until the results have been taken.
   /// @returns
   /// * kOk: Ready for trial 0.
   /// * kTooFewTrials: Fewer than kMinTrials, or q = pM would be M: no interval holds that share of
   /// so few trials.
   /// * kInvalidArgument: A probability outside (0, 1) or not a number, or q = pM rounds to zero.
   /// On failure a running procedure goes on unchanged.
-  Status start(std::uint32_t trials, double probability) noexcept;
+  Status start(std::uint32_t trials, double probability, MonteCarloStore& store) noexcept;
 
   /// @returns True before the first `start()`, after the last pass, and after a failure.
   bool done() const noexcept { return stage_ == Stage::kIdle || stage_ == Stage::kDone; }
@@ -101,7 +111,7 @@ class MonteCarlo {
   /// procedure: `done()` is true, the result's status is kInvalidArgument and `failed_trial` says
   /// which. So does a later pass whose values are not those of the first, as far as that is seen;
   /// `failed_trial` is M where no single value shows it.
-  void add(double value) noexcept;
+  void add(double value, MonteCarloStore& store) noexcept;
 
   /// @returns All with kOk once `done()`. Before that kTooFewTrials, with zeros except for the
   /// results of the first pass if it is complete. After a failure kInvalidArgument and
@@ -117,7 +127,7 @@ class MonteCarlo {
   /// @returns Once `done()` with kOk, the number of values in each of the kBins equal bins from
   /// `minimum` to `maximum` (the maximum itself counts in the last one); the sum is M. If all
   /// values are the same, all are in the first bin.
-  Span<const std::uint32_t> histogram() const noexcept;
+  Span<const std::uint32_t> histogram(const MonteCarloStore& store) const noexcept;
 
  private:
   enum class Stage : std::uint8_t { kIdle, kRange, kHistogram, kSelect, kDone };
@@ -141,22 +151,20 @@ class MonteCarlo {
   static_assert(kBins == 2 * kPoolSize);
 
   std::size_t half_bin_of(double value) const noexcept;
-  std::uint32_t count_of_half_bin(std::size_t half) const noexcept;
+  static std::uint32_t count_of_half_bin(std::size_t half, const MonteCarloStore& store) noexcept;
   std::uint64_t first_key_of_half_bin(std::size_t half) const noexcept;
   void add_to_range(double value) noexcept;
-  void add_to_histogram(double value) noexcept;
-  void add_to_targets(double value) noexcept;
-  void end_pass() noexcept;
-  void aim() noexcept;
-  void set_target(std::size_t index, std::uint32_t order) noexcept;
-  std::uint32_t shortest_order() const noexcept;
-  bool plan_targets() noexcept;
-  bool settle_targets() noexcept;
+  void add_to_histogram(double value, MonteCarloStore& store) noexcept;
+  void add_to_targets(double value, MonteCarloStore& store) noexcept;
+  void end_pass(MonteCarloStore& store) noexcept;
+  void aim(const MonteCarloStore& store) noexcept;
+  void set_target(std::size_t index, std::uint32_t order, const MonteCarloStore& store) noexcept;
+  std::uint32_t shortest_order(const MonteCarloStore& store) const noexcept;
+  bool plan_targets(MonteCarloStore& store) noexcept;
+  bool settle_targets(MonteCarloStore& store) noexcept;
   void fail() noexcept;
   void finish() noexcept;
 
-  std::uint64_t pool_[kPoolSize] = {};
-  std::uint32_t bins_[kBins] = {};
   Target targets_[kTargets] = {};
   double probability_ = 0.0;
   double origin_ = 0.0;  // The first value; mean and squares are of the differences from it.
@@ -177,7 +185,7 @@ class MonteCarlo {
 };
 
 static_assert(std::is_trivially_copyable_v<MonteCarlo>);
-static_assert(sizeof(MonteCarlo) <= 17 * 1024);
+static_assert(sizeof(MonteCarlo) <= 384);
 
 struct AdaptiveResult {
   Status status = Status::kTooFewTrials;
@@ -206,8 +214,8 @@ struct AdaptiveResult {
 /// Finds the number of trials; run a `MonteCarlo` over that many (the same engine will do) for
 /// exact results over all of them. The rule stops too early at times: it looks at few blocks.
 ///
-/// Borrows the engine that takes each block: no other use of it until `done()`. 112 bytes
-/// beside it.
+/// An engine takes each block: the same one in each call, with its store, and no other use of it
+/// until `done()`. 120 bytes beside it.
 class AdaptiveTrials {
  public:
   static constexpr std::uint32_t kDefaultDigits = 2;
@@ -215,14 +223,13 @@ class AdaptiveTrials {
 
   /// Starts over, with blocks of max(ceil(100/(1 - p)), 1e4) trials.
   ///
-  /// @param[in] engine             Outlives this object's use.
   /// @param[in] probability        p inside (0, 1).
   /// @param[in] significant_digits Of u(y): 1 to 4.
   /// @param[in] max_blocks         2 or more; at most 2^32 - 1 trials in all.
   /// @returns
   /// * kOk: Ready for trial 0.
   /// * kInvalidArgument: A value outside its range. Nothing has changed.
-  Status start(MonteCarlo& engine, double probability,
+  Status start(MonteCarlo& engine, MonteCarloStore& store, double probability,
                std::uint32_t significant_digits = kDefaultDigits,
                std::uint32_t max_blocks = kDefaultMaxBlocks) noexcept;
 
@@ -231,10 +238,10 @@ class AdaptiveTrials {
   /// @returns The number of the trial whose value comes next, counted over all blocks. The trials
   /// of a block are asked for again until the engine has its intervals; then come those of the next
   /// block.
-  std::uint32_t next_trial() const noexcept;
+  std::uint32_t next_trial(const MonteCarlo& engine) const noexcept;
 
   /// As `MonteCarlo::add()`.
-  void add(double value) noexcept;
+  void add(double value, MonteCarlo& engine, MonteCarloStore& store) noexcept;
 
   /// @returns All with kOk once `done()`, stable or not; before that kTooFewTrials with the blocks
   /// complete so far. After a failure kInvalidArgument and `failed_trial`.
@@ -249,12 +256,11 @@ class AdaptiveTrials {
   static constexpr std::size_t kQuantities = 4;
   static constexpr std::uint32_t kMinBlockSize = 10000;
 
-  void end_block() noexcept;
+  void end_block(MonteCarlo& engine, MonteCarloStore& store) noexcept;
   double scatter_of_mean(std::size_t quantity) const noexcept;
   double standard_uncertainty() const noexcept;
   bool stable() const noexcept;
 
-  MonteCarlo* engine_ = nullptr;
   Scatter scatter_[kQuantities] = {};
   double probability_ = 0.0;
   double squares_ = 0.0;  // Of all values about the mean of all values.

@@ -43,6 +43,8 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kStopped,           ///< Ended on request.
     kDcDrift,           ///< The offset of a channel does not stay where it was.
     kNotProven,         ///< No bound passed its check.
+    kNothingStored,     ///< No whole record is stored there.
+    kUnknownRecord,     ///< What is stored is of another version, or no such thing.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.

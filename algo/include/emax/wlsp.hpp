@@ -83,6 +83,7 @@ class Wlsp {
   /// is not positive definite.
   Status fit(const FrequencyResponse& response, Span<const ComplexCovariance> covariances) noexcept;
 
+  /// @returns That of the last fit; all zero before the first.
   const WlspFit& result() const noexcept { return fit_; }
   /// @returns The points of the last fit; none if there were too few.
   const FrequencyResponse& response() const noexcept { return response_; }
@@ -105,6 +106,12 @@ class Wlsp {
     Complex column[3];
   };
 
+  // All zero, so that the object may sit in .bss.
+  static constexpr WlspFit no_fit() noexcept {
+    WlspFit fit;
+    fit.status = Status::kOk;
+    return fit;
+  }
   Status load(const FrequencyResponse& response) noexcept;
   Status solve() noexcept;
   Status reject(Status status) noexcept;
@@ -126,7 +133,7 @@ class Wlsp {
   double first_scaled_[3] = {};  // The same of the fit without the common part.
   double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
   bool has_common_ = false;
-  WlspFit fit_;
+  WlspFit fit_ = no_fit();
 };
 
 static_assert(std::is_trivially_copyable_v<Wlsp>);
