@@ -23,6 +23,7 @@ using emax::Status;
 using emax::WlspFit;
 using emax::app::Device;
 using emax::app::Evaluation;
+using emax::app::EvaluationWorkspace;
 using emax::app::GainMode;
 using emax::app::Settings;
 using emax::app::Stage;
@@ -31,6 +32,7 @@ using emax::test::evaluated;
 using emax::test::finish;
 using emax::test::kTable2;
 using emax::test::quick_settings;
+using emax::test::shared_workspace;
 using emax::test::synthetic_points;
 using emax::test::table1;
 using emax::test::text_of;
@@ -48,11 +50,11 @@ Settings paper_settings(double duration_s) {
 Device without_uncertainty() { return {kTable2.estimate, {}}; }
 
 std::string report_of(const Evaluation& evaluation) {
-  return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, "x.csv", out); });
+  return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, {"x.csv"}, out); });
 }
 
 std::string json_of(const Evaluation& evaluation) {
-  return text_of([&](TextWriter& out) { emax::app::write_json(evaluation, "x.csv", out); });
+  return text_of([&](TextWriter& out) { emax::app::write_json(evaluation, {"x.csv"}, out); });
 }
 
 TEST(Evaluation, FitOfTable1) {
@@ -199,9 +201,13 @@ TEST(Evaluation, MonteCarloStaysBelowTheCorner) {
   trial_settings.box = kTable2.u;
   trial_settings.search.duration_s = settings.duration_s;
   const auto trials = std::make_unique<emax::EnergyTrials>();
-  ASSERT_EQ(trials->start(evaluation.model(), evaluation.maximum(), trial_settings, *workspace),
-            Status::kOk);
-  const double corner = 1.037 * 1.037 * trials->energy_of({1.040, 4067.0, 0.3178}, *workspace);
+  const emax::MaximumEnergy& best = evaluation.maximum();
+  ASSERT_EQ(trials->start(evaluation.model(), best, trial_settings), Status::kOk);
+  while (!trials->ready()) {
+    trials->prepare(best, *workspace);
+  }
+  const double corner =
+      1.037 * 1.037 * trials->energy_of({1.040, 4067.0, 0.3178}, best, *workspace);
   // Known to 8 digits; a grid alone costs less than 1e-4 of it.
   EXPECT_LT(corner, 0.00513469925);
   EXPECT_GT(corner, (1.0 - 1e-4) * 0.0051346992);
@@ -290,11 +296,11 @@ TEST(Evaluation, StoreOrNotIsTheSame) {
   }
   // Lent in the middle of the trials.
   std::vector<double> store(20000, -1.0);
-  ASSERT_EQ(evaluation.start_from_model(kTable2, settings), Status::kOk);
+  ASSERT_EQ(evaluation.start_from_model(kTable2, settings, shared_workspace()), Status::kOk);
   while (evaluation.stage() != Stage::kMonteCarlo) {
-    evaluation.step();
+    evaluation.step(shared_workspace());
   }
-  evaluation.step();
+  evaluation.step(shared_workspace());
   evaluation.lend_trial_store(Span<double>(store.data(), store.size()));
   finish(evaluation);
   evaluation.lend_trial_store({});
@@ -305,7 +311,7 @@ TEST(Evaluation, HistoryDoesNotMatter) {
   Settings settings = quick_settings();
   settings.trend_count = 2;
   const auto fresh = std::make_unique<Evaluation>();
-  ASSERT_EQ(fresh->start_from_model(kTable2, settings), Status::kOk);
+  ASSERT_EQ(fresh->start_from_model(kTable2, settings, shared_workspace()), Status::kOk);
   finish(*fresh);
   const std::string expected = json_of(*fresh) + report_of(*fresh);
 
@@ -314,14 +320,15 @@ TEST(Evaluation, HistoryDoesNotMatter) {
   EXPECT_EQ(json_of(evaluation) + report_of(evaluation), expected);
 
   // After a job that was left in the middle, and after one that was refused.
-  ASSERT_EQ(evaluation.start_from_points(table1(), Settings{}), Status::kOk);
+  ASSERT_EQ(evaluation.start_from_points(table1(), Settings{}, shared_workspace()), Status::kOk);
   for (int i = 0; i < 150; ++i) {
-    evaluation.step();
+    evaluation.step(shared_workspace());
   }
   evaluated(kTable2, settings);
   EXPECT_EQ(json_of(evaluation) + report_of(evaluation), expected);
   settings.filter_order = 16;
-  EXPECT_EQ(evaluation.start_from_model(kTable2, settings), Status::kInvalidArgument);
+  EXPECT_EQ(evaluation.start_from_model(kTable2, settings, shared_workspace()),
+            Status::kInvalidArgument);
   settings.filter_order = 10;
   evaluated(kTable2, settings);
   EXPECT_EQ(json_of(evaluation) + report_of(evaluation), expected);
@@ -329,17 +336,20 @@ TEST(Evaluation, HistoryDoesNotMatter) {
 
 TEST(Evaluation, CopyGoesOnByItself) {
   const auto original = std::make_unique<Evaluation>();
-  ASSERT_EQ(original->start_from_model(kTable2, quick_settings()), Status::kOk);
+  ASSERT_EQ(original->start_from_model(kTable2, quick_settings(), shared_workspace()), Status::kOk);
   while (original->stage() != Stage::kMonteCarlo) {
-    original->step();
+    original->step(shared_workspace());
   }
-  original->step();
+  original->step(shared_workspace());
   ASSERT_EQ(original->stage(), Stage::kMonteCarlo);
   const auto copy = std::make_unique<Evaluation>(*original);
+  const auto workspace = std::make_unique<EvaluationWorkspace>(shared_workspace());
   finish(*original);
   const std::string expected = json_of(*original);
   *original = Evaluation{};
-  finish(*copy);
+  while (!copy->done()) {
+    copy->step(*workspace);
+  }
   EXPECT_EQ(json_of(*copy), expected);
 }
 
@@ -348,7 +358,7 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
   settings.adaptive = true;
   settings.trend_count = 2;
   Evaluation& evaluation = emax::test::shared_evaluation();
-  ASSERT_EQ(evaluation.start_from_points(table1(), settings), Status::kOk);
+  ASSERT_EQ(evaluation.start_from_points(table1(), settings, shared_workspace()), Status::kOk);
   std::vector<Stage> stages;
   std::vector<int> steps;
   while (!evaluation.done()) {
@@ -359,18 +369,18 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
     ++steps.back();
     ASSERT_GE(evaluation.progress(), 0.0);
     ASSERT_LE(evaluation.progress(), 1.0);
-    evaluation.step();
+    evaluation.step(shared_workspace());
   }
-  const std::vector<Stage> expected = {Stage::kFitDraws, Stage::kEnergy,     Stage::kBound,
-                                       Stage::kAdaptive, Stage::kMonteCarlo, Stage::kGuard,
-                                       Stage::kTrend};
+  const std::vector<Stage> expected = {Stage::kModel,      Stage::kFitDraws,   Stage::kEnergy,
+                                       Stage::kBound,      Stage::kPrediction, Stage::kAdaptive,
+                                       Stage::kMonteCarlo, Stage::kGuard,      Stage::kTrend};
   ASSERT_EQ(stages, expected);
   EXPECT_EQ(evaluation.stage(), Stage::kDone);
   EXPECT_EQ(evaluation.progress(), 1.0);
-  EXPECT_EQ(steps[0], 100);  // 10000 draws, 100 a step.
+  EXPECT_EQ(steps[1], 400);  // 10000 draws, 25 a step.
   // No stage is done in one go.
-  EXPECT_GT(*std::min_element(steps.begin(), steps.end()), 50);
-  evaluation.step();
+  EXPECT_GT(*std::min_element(steps.begin(), steps.end()), 5);
+  evaluation.step(shared_workspace());
   EXPECT_EQ(evaluation.stage(), Stage::kDone);
 }
 
@@ -384,7 +394,7 @@ TEST(Evaluation, NamesOfStages) {
 void expect_refused(const Device& device, const Settings& settings, Status status, Stage stage,
                     const std::string& words) {
   Evaluation& evaluation = emax::test::shared_evaluation();
-  EXPECT_EQ(evaluation.start_from_model(device, settings), status) << words;
+  EXPECT_EQ(evaluation.start_from_model(device, settings, shared_workspace()), status) << words;
   EXPECT_EQ(evaluation.stage(), Stage::kFailed);
   EXPECT_EQ(evaluation.status(), status);
   EXPECT_TRUE(evaluation.done());
@@ -393,7 +403,7 @@ void expect_refused(const Device& device, const Settings& settings, Status statu
       text_of([&](TextWriter& out) { emax::app::write_failure(evaluation, out); });
   EXPECT_NE(said.find(words), std::string::npos) << said;
   EXPECT_EQ(said.find('\n'), std::string::npos) << said;
-  evaluation.step();
+  evaluation.step(shared_workspace());
   EXPECT_EQ(evaluation.stage(), Stage::kFailed);
 }
 
@@ -454,7 +464,8 @@ TEST(Evaluation, RefusesFits) {
     return text_of([&](TextWriter& out) { emax::app::write_failure(evaluation, out); });
   };
   FrequencyResponse points;
-  EXPECT_EQ(evaluation.start_from_points(points, quick_settings()), Status::kTooFewPoints);
+  EXPECT_EQ(evaluation.start_from_points(points, quick_settings(), shared_workspace()),
+            Status::kTooFewPoints);
   EXPECT_EQ(evaluation.failure().stage, Stage::kFitDraws);
 
   const FrequencyResponse measured = table1();
@@ -462,7 +473,8 @@ TEST(Evaluation, RefusesFits) {
     point.phase_rad += 3.14159265358979323846;
     ASSERT_EQ(points.add(point), Status::kOk);
   }
-  EXPECT_EQ(evaluation.start_from_points(points, quick_settings()), Status::kInvertedPolarity);
+  EXPECT_EQ(evaluation.start_from_points(points, quick_settings(), shared_workspace()),
+            Status::kInvertedPolarity);
   EXPECT_NE(said().find("S = -1.0079"), std::string::npos) << said();
 
   points.clear();
@@ -470,7 +482,8 @@ TEST(Evaluation, RefusesFits) {
     point.phase_rad = -point.phase_rad;
     ASSERT_EQ(points.add(point), Status::kOk);
   }
-  EXPECT_EQ(evaluation.start_from_points(points, quick_settings()), Status::kNotPhysical);
+  EXPECT_EQ(evaluation.start_from_points(points, quick_settings(), shared_workspace()),
+            Status::kNotPhysical);
   EXPECT_NE(said().find("mu2 = -"), std::string::npos) << said();
   EXPECT_EQ(evaluation.stage(), Stage::kFailed);
   // The fit is there to be looked at.
@@ -486,7 +499,8 @@ TEST(Evaluation, UncertaintiesOfAPoorFitAreRefused) {
     ASSERT_EQ(points.add(point), Status::kOk);
   }
   Evaluation& evaluation = emax::test::shared_evaluation();
-  EXPECT_EQ(evaluation.start_from_points(points, quick_settings()), Status::kInvalidArgument);
+  EXPECT_EQ(evaluation.start_from_points(points, quick_settings(), shared_workspace()),
+            Status::kInvalidArgument);
   EXPECT_EQ(evaluation.failure().stage, Stage::kMonteCarlo);
 }
 

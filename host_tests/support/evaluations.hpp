@@ -70,21 +70,27 @@ inline FrequencyResponse synthetic_points(double scatter, unsigned seed = 1) {
   return points;
 }
 
-/// An evaluation takes 130 KiB; one is enough for a test program. Left as it is from use to use.
+/// One is enough for a test program. Left as it is from use to use.
 inline app::Evaluation& shared_evaluation() {
   static app::Evaluation evaluation;
   return evaluation;
 }
 
+/// The same of its memory.
+inline app::EvaluationWorkspace& shared_workspace() {
+  static app::EvaluationWorkspace workspace;
+  return workspace;
+}
+
 inline void finish(app::Evaluation& evaluation) {
   while (!evaluation.done()) {
-    evaluation.step();
+    evaluation.step(shared_workspace());
   }
 }
 
 inline app::Evaluation& evaluated(const app::Device& device, const app::Settings& settings) {
   app::Evaluation& evaluation = shared_evaluation();
-  if (evaluation.start_from_model(device, settings) == Status::kOk) {
+  if (evaluation.start_from_model(device, settings, shared_workspace()) == Status::kOk) {
     finish(evaluation);
   }
   return evaluation;
@@ -92,7 +98,7 @@ inline app::Evaluation& evaluated(const app::Device& device, const app::Settings
 
 inline app::Evaluation& evaluated(const FrequencyResponse& points, const app::Settings& settings) {
   app::Evaluation& evaluation = shared_evaluation();
-  if (evaluation.start_from_points(points, settings) == Status::kOk) {
+  if (evaluation.start_from_points(points, settings, shared_workspace()) == Status::kOk) {
     finish(evaluation);
   }
   return evaluation;
