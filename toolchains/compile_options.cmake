@@ -23,6 +23,16 @@ target_compile_options(emax_freestanding INTERFACE
   -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -fno-math-errno
   -fno-unwind-tables -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections)
 
+# The gate on the stack reads what gcc writes beside each object.
+if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(emax_freestanding INTERFACE -fstack-usage -fcallgraph-info=su)
+endif()
+
+# Images of a board: startup and memory map are the board's own, and what nothing uses is left out.
+add_library(emax_firmware INTERFACE)
+target_link_libraries(emax_firmware INTERFACE emax_arithmetic emax_freestanding emax_warnings)
+target_link_options(emax_firmware INTERFACE -nostartfiles LINKER:--gc-sections,--fatal-warnings)
+
 # Programs of a PC: the instrument's host board, tests and benchmarks.
 add_library(emax_hosted INTERFACE)
 target_link_libraries(emax_hosted INTERFACE emax_arithmetic emax_warnings)
@@ -33,9 +43,11 @@ include(${CMAKE_CURRENT_LIST_DIR}/sanitizers.cmake)
 # A static library, also as emax::<name without emax_>, whose public headers are in include/.
 function(emax_add_freestanding_library name)
   add_library(${name} STATIC ${ARGN})
-  string(REPLACE "emax_" "emax::" alias ${name})
-  add_library(${alias} ALIAS ${name})
-  target_include_directories(${name} PUBLIC include)
+  string(REPLACE "emax_" "" short_name ${name})
+  add_library(emax::${short_name} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${name}
     PUBLIC emax_arithmetic
     PRIVATE $<BUILD_INTERFACE:emax_freestanding> $<BUILD_INTERFACE:emax_warnings>)

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-// CMake passes its cache variables of these names to the libraries and to all that link them. Whoever
-// compiles the sources otherwise defines them for everything, or for nothing.
+// CMake passes its cache variables of these names to the libraries and to all that link them.
+// Whoever compiles the sources otherwise defines them for everything, or for nothing.
 #ifndef EMAX_MAX_SWITCHES
 #define EMAX_MAX_SWITCHES 256
 #endif

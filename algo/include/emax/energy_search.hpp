@@ -55,7 +55,8 @@ class GridWorkspace {
   SwitchingSignal& signal() noexcept { return signal_; }
 
  private:
-  static_assert(packed_size(kPhiCells) >= kMaxCells, "EMAX_PHI_CELLS is too small for EMAX_MAX_CELLS");
+  static_assert(packed_size(kPhiCells) >= kMaxCells,
+                "EMAX_PHI_CELLS is too small for EMAX_MAX_CELLS");
   static_assert(packed_size(kPhiCells) >= kRefinementScratch,
                 "EMAX_PHI_CELLS is too small for EMAX_MAX_SWITCHES");
   // No initialisers, so that an assignment to a member brings it to life.

@@ -1,0 +1,23 @@
+// The largest error energy of one accelerometer, in static memory and in short steps.
+#include <cstdio>
+
+#include "emax/energy_search.hpp"
+
+static emax::ModalModel model;
+static emax::EnergySearch search;
+static emax::GridWorkspace workspace;
+
+int main() {
+  const emax::Accelerometer device = {1.037, 4073.0, 0.3182};  // V/(m/s^2), Hz, damping.
+  const emax::Butterworth filter = {10, 1000.0, 1.037};        // Order, Hz, V/(m/s^2).
+  emax::Status status = model.set(device, filter, emax::Criterion::kIntegralSquareError);
+  const emax::SearchSettings settings = {emax::Method::kBest, 0.002, 0.0, 0};  // T = 2 ms.
+  status = status == emax::Status::kOk ? search.start(model, settings) : status;
+  while (status == emax::Status::kOk && !search.done()) {
+    status = search.step(model, workspace);
+    // Here the firmware does the rest of its work.
+  }
+  const double energy = 1.037 * 1.037 * search.result().energy;  // For signals within 1.037 m/s^2.
+  std::printf("E = %.13g V^2 s\n", energy);
+  return status == emax::Status::kOk ? 0 : 1;
+}
