@@ -38,6 +38,7 @@ inline std::vector<double> table1_frequencies() {
 struct SweepRun {
   emax::sim::SimBench bench;
   emax::app::Sweep sweep;
+  emax::app::SweepWorkspace work;
   std::uint64_t last_step_frames = 0;  ///< Of the bench, in the step that ended the sweep.
 
   explicit SweepRun(const emax::sim::BenchSettings& settings,
@@ -47,10 +48,10 @@ struct SweepRun {
   }
 
   void to_end(const emax::app::SweepSettings& settings) {
-    ASSERT_EQ(sweep.start(settings, bench), emax::Status::kOk);
+    ASSERT_EQ(sweep.start(settings, bench, work), emax::Status::kOk);
     while (!sweep.done()) {
       const std::uint64_t before = bench.clock_frames();
-      sweep.step(bench);
+      sweep.step(bench, work);
       last_step_frames = bench.clock_frames() - before;
     }
     EXPECT_FALSE(bench.running());

@@ -73,18 +73,23 @@ const Evaluation& evaluated(const Sweep& sweep) {
 
 std::string report_of(const SweepRun& run) {
   const Evaluation& evaluation = evaluated(run.sweep);
-  return text_of(
-      [&](TextWriter& out) { emax::app::write_report(evaluation, measurement_of(run), out); });
+  const Measurement measurement = measurement_of(run);
+  return text_of([&](TextWriter& out) {
+    emax::app::write_report(evaluation, {nullptr, &measurement}, out);
+  });
 }
 
 std::string fault_report_of(const SweepRun& run, const Evaluation* refused = nullptr) {
-  return text_of(
-      [&](TextWriter& out) { emax::app::write_measurement(measurement_of(run), refused, out); });
+  const Measurement measurement = measurement_of(run);
+  return text_of([&](TextWriter& out) {
+    emax::app::write_measurement({nullptr, &measurement}, refused, out);
+  });
 }
 
 JsonReader fault_json_of(const SweepRun& run, const Evaluation* refused = nullptr) {
+  const Measurement measurement = measurement_of(run);
   return JsonReader(text_of([&](TextWriter& out) {
-    emax::app::write_measurement_json(measurement_of(run), refused, out);
+    emax::app::write_measurement_json({nullptr, &measurement}, refused, out);
   }));
 }
 
@@ -187,13 +192,15 @@ TEST(Measurement, RealBenchHasNoTruth) {
   const SweepRun& run = good_run();
   const Evaluation& evaluation = evaluated(run.sweep);
   const Measurement real = {run.sweep, run.bench.format(), nullptr};
-  const std::string report =
-      text_of([&](TextWriter& out) { emax::app::write_report(evaluation, real, out); });
+  const std::string report = text_of([&](TextWriter& out) {
+    emax::app::write_report(evaluation, {nullptr, &real}, out);
+  });
   expect_well_formed(report);
   EXPECT_FALSE(says(report, "simulated"));
   EXPECT_FALSE(says(report, "Truth"));
-  const JsonReader json(
-      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, real, out); }));
+  const JsonReader json(text_of([&](TextWriter& out) {
+    emax::app::write_json(evaluation, {nullptr, &real}, out);
+  }));
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("bench.seed"), "null");
   EXPECT_EQ(json.at("bench.truth"), "null");
@@ -202,8 +209,10 @@ TEST(Measurement, RealBenchHasNoTruth) {
 TEST(Measurement, Json) {
   const SweepRun& run = good_run();
   const Evaluation& evaluation = evaluated(run.sweep);
-  const JsonReader json(text_of(
-      [&](TextWriter& out) { emax::app::write_json(evaluation, measurement_of(run), out); }));
+  const Measurement measurement = measurement_of(run);
+  const JsonReader json(text_of([&](TextWriter& out) {
+    emax::app::write_json(evaluation, {nullptr, &measurement}, out);
+  }));
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("model.source"), "bench");
   EXPECT_EQ(json.at("model.name"), "null");
@@ -391,7 +400,7 @@ TEST(Measurement, CommonPartOfAPointsTable) {
   ASSERT_EQ(emax::app::remove_common(points, 0.5).status, Status::kOk);
   const Evaluation& evaluation = emax::test::evaluated(points, quick_settings());
   const std::string report =
-      text_of([&](TextWriter& out) { emax::app::write_report(evaluation, "t.csv", out); });
+      text_of([&](TextWriter& out) { emax::app::write_report(evaluation, {"t.csv"}, out); });
   expect_well_formed(report);
   EXPECT_TRUE(says(report, "0.2500 % of every amplitude"));
   // Weighted least squares with the full covariance matrix, by NumPy.
@@ -403,7 +412,7 @@ TEST(Measurement, CommonPartOfAPointsTable) {
   EXPECT_NEAR(std::sqrt(evaluation.fit_draws().covariance[0][0]), fit.u_sensitivity,
               0.03 * fit.u_sensitivity);
   const JsonReader json(
-      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, "t.csv", out); }));
+      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, {"t.csv"}, out); }));
   ASSERT_TRUE(json.valid());
   EXPECT_NEAR(json.number("model.common_percent"), 0.5, 1e-15);
   EXPECT_EQ(json.at("bench"), "null");

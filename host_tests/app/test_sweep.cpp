@@ -22,6 +22,7 @@ using emax::app::Sweep;
 using emax::app::SweepPoint;
 using emax::app::SweepSettings;
 using emax::app::SweepStage;
+using emax::app::SweepWorkspace;
 using emax::sim::BenchSettings;
 using emax::sim::SimBench;
 using emax_test::ideal_bench;
@@ -113,6 +114,16 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
   }
 }
 
+void expect_same_points(const Sweep& sweep, const std::vector<SweepPoint>& expected) {
+  ASSERT_EQ(sweep.points().size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(sweep.points()[i].point.amplitude, expected[i].point.amplitude);
+    EXPECT_EQ(sweep.points()[i].point.u_amplitude, expected[i].point.u_amplitude);
+    EXPECT_EQ(sweep.points()[i].point.u_phase_rad, expected[i].point.u_phase_rad);
+    EXPECT_EQ(sweep.points()[i].drive_v, expected[i].drive_v);
+  }
+}
+
 TEST(Sweep, RunsAgainWithTheSameBits) {
   SweepSettings settings;
   settings.frequency_hz = {300.0, 700.0, 5000.0};
@@ -127,27 +138,51 @@ TEST(Sweep, RunsAgainWithTheSameBits) {
   run.to_end(SweepSettings());
   ASSERT_EQ(run.bench.configure(BenchSettings()), Status::kOk);
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.points().size(), before.size());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    EXPECT_EQ(run.sweep.points()[i].point.amplitude, before[i].point.amplitude);
-    EXPECT_EQ(run.sweep.points()[i].point.u_phase_rad, before[i].point.u_phase_rad);
-    EXPECT_EQ(run.sweep.points()[i].drive_v, before[i].drive_v);
+  expect_same_points(run.sweep, before);
+}
+
+TEST(Sweep, WhatTheWorkspaceHoldsBeforeAndAfterDoesNotMatter) {
+  SweepSettings settings;
+  settings.frequency_hz = {300.0, 700.0, 5000.0};
+  settings.frequency_count = 3;
+  SweepRun clean((BenchSettings()));
+  clean.to_end(settings);
+  ASSERT_EQ(clean.sweep.status(), Status::kOk);
+  const std::vector<SweepPoint> expected(clean.sweep.points().begin(), clean.sweep.points().end());
+  // The bytes of other work, as numbers small, large, negative and none at all.
+  for (const int byte : {0x00, 0x3F, 0x7F, 0xC0, 0xFF}) {
+    SweepRun run((BenchSettings()));
+    std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
+    run.to_end(settings);
+    ASSERT_EQ(run.sweep.status(), Status::kOk) << byte;
+    std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
+    EXPECT_EQ(run.sweep.noise().device_v, clean.sweep.noise().device_v);
+    EXPECT_EQ(run.sweep.common().total, clean.sweep.common().total);
+    expect_same_points(run.sweep, expected);
   }
+}
+
+TEST(Sweep, HasNoSettingsBeforeItsFirstStart) {
+  static Sweep sweep;
+  EXPECT_EQ(sweep.settings().frequency_count, 0U);
+  EXPECT_EQ(sweep.settings().repeats, 0U);
+  EXPECT_EQ(sweep.settings().reference.count, 0U);
+  EXPECT_EQ(sweep.settings().expected_sensitivity, 0.0);
 }
 
 TEST(Sweep, StagesFollowEachOther) {
   SweepRun run((BenchSettings()));
   EXPECT_TRUE(run.sweep.done());
   EXPECT_EQ(run.sweep.stage(), SweepStage::kIdle);
-  run.sweep.step(run.bench);  // Nothing.
-  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench), Status::kOk);
-  EXPECT_EQ(run.sweep.start(SweepSettings(), run.bench), Status::kAlreadyRunning);
+  run.sweep.step(run.bench, run.work);  // Nothing.
+  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
+  EXPECT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kAlreadyRunning);
   emax::FrequencyResponse response;
   EXPECT_EQ(run.sweep.copy_to(response), Status::kNotRunning);
   std::vector<SweepStage> stages = {run.sweep.stage()};
   double progress = 0.0;
   while (!run.sweep.done()) {
-    run.sweep.step(run.bench);
+    run.sweep.step(run.bench, run.work);
     EXPECT_GE(run.sweep.progress(), progress);
     progress = run.sweep.progress();
     if (run.sweep.stage() != stages.back()) {
@@ -198,13 +233,13 @@ TEST(Sweep, StopsBetweenAnyTwoBlocks) {
   for (const std::uint64_t blocks : {0U, 1U, 200U, 400U, 900U, 3000U, 6000U, 8950U}) {
     SweepRun run((BenchSettings()));
     SweepSettings settings;
-    ASSERT_EQ(run.sweep.start(settings, run.bench), Status::kOk);
+    ASSERT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
     while (run.sweep.blocks() < blocks) {
-      run.sweep.step(run.bench);
+      run.sweep.step(run.bench, run.work);
     }
     const std::uint64_t before = run.bench.clock_frames();
     const std::size_t points = run.sweep.points().size();
-    run.sweep.stop(run.bench);
+    run.sweep.stop(run.bench, run.work);
     EXPECT_TRUE(run.sweep.done());
     EXPECT_EQ(run.sweep.status(), Status::kStopped);
     EXPECT_EQ(run.sweep.points().size(), points);
@@ -215,10 +250,10 @@ TEST(Sweep, StopsBetweenAnyTwoBlocks) {
       EXPECT_GT(point.point.u_amplitude, 0.0);
     }
     run.expect_limits_kept(settings);
-    run.sweep.stop(run.bench);
-    run.sweep.step(run.bench);
+    run.sweep.stop(run.bench, run.work);
+    run.sweep.step(run.bench, run.work);
     EXPECT_EQ(run.sweep.status(), Status::kStopped);
-    EXPECT_EQ(run.sweep.start(settings, run.bench), Status::kOk);
+    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
   }
 }
 
@@ -432,21 +467,22 @@ TEST(Sweep, BadSettingsAreRefusedByName) {
   for (const BadSetting& bad : kBad) {
     SweepSettings settings;
     bad.spoil(settings);
-    EXPECT_EQ(run.sweep.start(settings, run.bench), Status::kInvalidArgument) << bad.name;
+    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kInvalidArgument) << bad.name;
     ASSERT_NE(run.sweep.refused_setting(), nullptr);
     EXPECT_EQ(std::string(run.sweep.refused_setting()), bad.name);
     EXPECT_GT(std::strlen(run.sweep.refused_expectation()), 5U);
     EXPECT_FALSE(run.bench.running());
     EXPECT_EQ(run.sweep.points().size(), 3U);  // What was measured before is still there.
   }
-  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench), Status::kOk);
+  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
   EXPECT_EQ(run.sweep.refused_setting(), nullptr);
 }
 
 TEST(Sweep, BenchThatDoesNotStart) {
   SimBench bench;  // Not configured.
   static Sweep sweep;
-  EXPECT_EQ(sweep.start(SweepSettings(), bench), Status::kHardwareFault);
+  static SweepWorkspace work;
+  EXPECT_EQ(sweep.start(SweepSettings(), bench, work), Status::kHardwareFault);
   EXPECT_TRUE(sweep.done());
   EXPECT_EQ(sweep.refused_setting(), nullptr);
 }

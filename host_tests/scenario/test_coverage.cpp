@@ -51,6 +51,7 @@ TEST(Coverage, OfFiveHundredBenches) {
   }
   static emax::sim::SimBench bench;
   static emax::app::Sweep sweep;
+  static emax::app::SweepWorkspace work;
   static emax::FrequencyResponse response;
   static emax::Wlsp wlsp;
   Inside with_common;
@@ -61,9 +62,9 @@ TEST(Coverage, OfFiveHundredBenches) {
     emax::sim::BenchSettings settings;
     settings.seed = seed;
     ASSERT_EQ(bench.configure(settings), Status::kOk);
-    ASSERT_EQ(sweep.start(emax::app::SweepSettings(), bench), Status::kOk);
+    ASSERT_EQ(sweep.start(emax::app::SweepSettings(), bench, work), Status::kOk);
     while (!sweep.done()) {
-      sweep.step(bench);
+      sweep.step(bench, work);
     }
     ASSERT_EQ(sweep.status(), Status::kOk) << "seed " << seed;
     ASSERT_EQ(sweep.copy_to(response), Status::kOk);

@@ -25,6 +25,7 @@ hal::Word to_word(double value) noexcept {
 void DriveOscillator::configure(const hal::StreamFormat& format, double limit_v,
                                 double slew_v_per_s) noexcept {
   *this = DriveOscillator();
+  step_cosine_ = 1.0;
   sample_rate_hz_ = format.sample_rate_hz;
   full_scale_v_ = format.drive_full_scale_v;
   limit_v_ = limit_v;

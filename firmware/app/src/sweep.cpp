@@ -20,7 +20,21 @@ std::uint32_t frames_of(double frames) noexcept {
 
 }  // namespace
 
-Status Sweep::start(const SweepSettings& settings, hal::AnalogStream& stream) noexcept {
+// Whatever the memory held before. What is not here is written before it is read.
+void SweepWorkspace::begin(const hal::StreamFormat& format) noexcept {
+  format_ = format;
+  reference_monitor_ = ChannelMonitor();
+  device_monitor_ = ChannelMonitor();
+  target_ = Target();
+  last_ratio_ = Complex();
+  drive_per_acceleration_ = 0.0;
+  level_scale_ = 1.0;
+  activity_ = Activity::kSilence;
+  is_lowering_ = false;
+}
+
+Status Sweep::start(const SweepSettings& settings, hal::AnalogStream& stream,
+                    SweepWorkspace& work) noexcept {
   if (!done()) {
     return Status::kAlreadyRunning;
   }
@@ -33,50 +47,41 @@ Status Sweep::start(const SweepSettings& settings, hal::AnalogStream& stream) no
     return status;
   }
   settings_ = settings;
-  format_ = stream.format();
   reset();
-  inputs_.sample_rate_hz = format_.sample_rate_hz;
-  drive_.configure(format_, settings.drive_limit_v, settings.slew_v_per_s);
-  silence_.start(format_.sample_rate_hz);
-  left_ = silence_.frames();
-  activity_ = Activity::kSilence;
+  work.begin(stream.format());
+  inputs_.sample_rate_hz = work.format_.sample_rate_hz;
+  work.drive_.configure(work.format_, settings.drive_limit_v, settings.slew_v_per_s);
+  work.silence_.start(work.format_.sample_rate_hz);
+  work.left_ = work.silence_.frames();
   stage_ = SweepStage::kSilence;
   return Status::kOk;
 }
 
 // One by one: a whole new object would pass over the stack.
 void Sweep::reset() noexcept {
-  reference_monitor_ = ChannelMonitor();
-  device_monitor_ = ChannelMonitor();
-  target_ = Target();
-  repeats_.count = 0;
   inputs_ = BudgetInputs();
   common_ = CommonBudget();
   noise_ = ChannelNoise();
-  last_ratio_ = Complex();
   check_before_ = Complex();
   check_after_ = Complex();
   failed_frequency_hz_ = 0.0;
-  drive_per_acceleration_ = 0.0;
-  level_scale_ = 1.0;
   blocks_ = 0;
   point_count_ = 0;
   status_ = Status::kOk;
-  is_lowering_ = false;
 }
 
-void Sweep::stop(hal::AnalogStream& stream) noexcept {
+void Sweep::stop(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
   if (!done()) {
-    fail(Status::kStopped, stream);
+    fail(Status::kStopped, stream, work);
   }
 }
 
-void Sweep::fail(Status status, hal::AnalogStream& stream) noexcept {
+void Sweep::fail(Status status, hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
   (void)stream.stop();
   status_ = status;
-  failed_frequency_hz_ = stage_ == SweepStage::kSilence ? 0.0 : target_.frequency_hz;
+  failed_frequency_hz_ = stage_ == SweepStage::kSilence ? 0.0 : work.target_.frequency_hz;
   stage_ = SweepStage::kFailed;
-  finish();
+  finish(work);
 }
 
 double Sweep::progress() const noexcept {
@@ -88,213 +93,219 @@ double Sweep::progress() const noexcept {
   return (static_cast<double>(point_count_) + checks) / all;
 }
 
-void Sweep::step(hal::AnalogStream& stream) noexcept {
+void Sweep::step(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
   if (done()) {
     return;
   }
-  const Span<hal::Word> words = Span<hal::Word>(words_).first(format_.block_frames);
-  drive_.fill(words);
+  const Span<hal::Word> words = Span<hal::Word>(work.words_).first(work.format_.block_frames);
+  work.drive_.fill(words);
   const hal::Exchange exchange =
-      stream.exchange(words, Span<hal::Frame>(frames_).first(format_.block_frames));
+      stream.exchange(words, Span<hal::Frame>(work.frames_).first(work.format_.block_frames));
   if (exchange.status != Status::kOk) {
-    fail(exchange.status, stream);
+    fail(exchange.status, stream, work);
     return;
   }
   ++blocks_;
-  take_frames(stream);
+  take_frames(stream, work);
 }
 
-void Sweep::take_frames(hal::AnalogStream& stream) noexcept {
-  const double volts = format_.input_full_scale_v / kWordScale;
-  for (std::size_t i = 0; i < format_.block_frames; ++i) {
-    reference_monitor_.add(frames_[i].reference);
-    device_monitor_.add(frames_[i].device);
-    reference_v_[i] = volts * static_cast<double>(frames_[i].reference);
-    device_v_[i] = volts * static_cast<double>(frames_[i].device);
+void Sweep::take_frames(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
+  const double volts = work.format_.input_full_scale_v / kWordScale;
+  for (std::size_t i = 0; i < work.format_.block_frames; ++i) {
+    work.reference_monitor_.add(work.frames_[i].reference);
+    work.device_monitor_.add(work.frames_[i].device);
+    work.reference_v_[i] = volts * static_cast<double>(work.frames_[i].reference);
+    work.device_v_[i] = volts * static_cast<double>(work.frames_[i].device);
   }
-  block_is_spent_ = false;
-  watch(stream);
+  work.block_is_spent_ = false;
+  watch(stream, work);
   std::size_t from = 0;
-  while (!done() && !block_is_spent_ && from < format_.block_frames) {
-    std::size_t count = format_.block_frames - from;
-    count = left_ < count ? left_ : count;
-    consume(from, count);
+  while (!done() && !work.block_is_spent_ && from < work.format_.block_frames) {
+    std::size_t count = work.format_.block_frames - from;
+    count = work.left_ < count ? work.left_ : count;
+    consume(from, count, work);
     from += count;
-    left_ -= static_cast<std::uint32_t>(count);
-    if (left_ == 0) {
-      end_activity(stream);
+    work.left_ -= static_cast<std::uint32_t>(count);
+    if (work.left_ == 0) {
+      end_activity(stream, work);
     }
   }
 }
 
 // What must be answered at once, whatever is going on.
-void Sweep::watch(hal::AnalogStream& stream) noexcept {
+void Sweep::watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
   const bool full_scale =
-      reference_monitor_.full_scale_words() > 0 || device_monitor_.full_scale_words() > 0;
-  reference_monitor_.clear_full_scale();
-  device_monitor_.clear_full_scale();
-  if (activity_ == Activity::kSilence) {
+      work.reference_monitor_.full_scale_words() > 0 || work.device_monitor_.full_scale_words() > 0;
+  work.reference_monitor_.clear_full_scale();
+  work.device_monitor_.clear_full_scale();
+  if (work.activity_ == Activity::kSilence) {
     if (full_scale) {
-      fail(Status::kSaturated, stream);
+      fail(Status::kSaturated, stream, work);
     }
     return;
   }
-  if (activity_ == Activity::kRampingDown) {
+  if (work.activity_ == Activity::kRampingDown) {
     return;
   }
-  const std::uint64_t period = frames_of(format_.sample_rate_hz / target_.frequency_hz);
+  const std::uint64_t period = frames_of(work.format_.sample_rate_hz / work.target_.frequency_hz);
   const std::uint64_t most = period > kMinEqualWords ? period : kMinEqualWords;
-  if (reference_monitor_.equal_words() > most || device_monitor_.equal_words() > most) {
-    fail(Status::kStuckChannel, stream);
+  if (work.reference_monitor_.equal_words() > most || work.device_monitor_.equal_words() > most) {
+    fail(Status::kStuckChannel, stream, work);
     return;
   }
-  is_lowering_ = is_lowering_ && activity_ == Activity::kSettling && left_ > settle_left_;
-  if (is_lowering_) {
+  work.is_lowering_ =
+      work.is_lowering_ && work.activity_ == Activity::kSettling && work.left_ > work.settle_left_;
+  if (work.is_lowering_) {
     return;
   }
   double peak_v = 0.0;
-  for (std::size_t i = 0; i < format_.block_frames; ++i) {
-    const double v = abs(reference_v_[i] - inputs_.silent_reference.offset_v);
+  for (std::size_t i = 0; i < work.format_.block_frames; ++i) {
+    const double v = abs(work.reference_v_[i] - inputs_.silent_reference.offset_v);
     peak_v = v > peak_v ? v : peak_v;
   }
   peak_v -= kNoisePeak * inputs_.silent_reference.noise_v;
-  if (full_scale || acceleration_of(peak_v) > settings_.limit_mps2) {
-    lower_level(stream);
+  if (full_scale || acceleration_of(peak_v, work) > settings_.limit_mps2) {
+    lower_level(stream, work);
   }
 }
 
-void Sweep::lower_level(hal::AnalogStream& stream) noexcept {
-  target_.was_overrange = true;
-  level_scale_ *= 0.5;
-  if (level_scale_ < kLeastScale) {
-    fail(Status::kSaturated, stream);
+void Sweep::lower_level(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
+  work.target_.was_overrange = true;
+  work.level_scale_ *= 0.5;
+  if (work.level_scale_ < kLeastScale) {
+    fail(Status::kSaturated, stream, work);
     return;
   }
-  is_lowering_ = true;
-  drive_to(0.5 * drive_.amplitude_v());
+  work.is_lowering_ = true;
+  drive_to(0.5 * work.drive_.amplitude_v(), work);
 }
 
-void Sweep::consume(std::size_t from, std::size_t count) noexcept {
-  const Span<const double> reference = Span<const double>(reference_v_).from(from).first(count);
-  const Span<const double> device = Span<const double>(device_v_).from(from).first(count);
-  if (activity_ == Activity::kSilence) {
-    silence_.add(reference, device);
-  } else if (activity_ == Activity::kMeasuring) {
-    reference_fit_.add(reference);
-    device_fit_.add(device);
+void Sweep::consume(std::size_t from, std::size_t count, SweepWorkspace& work) noexcept {
+  const Span<const double> reference =
+      Span<const double>(work.reference_v_).from(from).first(count);
+  const Span<const double> device = Span<const double>(work.device_v_).from(from).first(count);
+  if (work.activity_ == Activity::kSilence) {
+    work.silence_.add(reference, device);
+  } else if (work.activity_ == Activity::kMeasuring) {
+    work.reference_fit_.add(reference);
+    work.device_fit_.add(device);
   }
 }
 
-void Sweep::end_activity(hal::AnalogStream& stream) noexcept {
-  switch (activity_) {
+void Sweep::end_activity(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
+  switch (work.activity_) {
     case Activity::kSilence:
-      end_silence(stream);
+      end_silence(stream, work);
       return;
     case Activity::kSettling:
-      repeats_.count = 0;
-      reference_rest2_ = 0.0;
-      device_rest2_ = 0.0;
-      activity_ = Activity::kMeasuring;
-      begin_repeat();
+      work.repeats_.count = 0;
+      work.reference_rest2_ = 0.0;
+      work.device_rest2_ = 0.0;
+      work.activity_ = Activity::kMeasuring;
+      begin_repeat(work);
       return;
     case Activity::kMeasuring:
-      end_repeat(stream);
+      end_repeat(stream, work);
       return;
     case Activity::kRampingDown:
       (void)stream.stop();
       stage_ = SweepStage::kDone;
-      finish();
+      finish(work);
       return;
   }
 }
 
-void Sweep::end_silence(hal::AnalogStream& stream) noexcept {
-  inputs_.silent_reference = silence_.reference();
-  inputs_.silent_device = silence_.device();
-  const double most_v = kWanderShare * format_.input_full_scale_v;
+void Sweep::end_silence(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
+  inputs_.silent_reference = work.silence_.reference();
+  inputs_.silent_device = work.silence_.device();
+  const double most_v = kWanderShare * work.format_.input_full_scale_v;
   if (abs(inputs_.silent_reference.drift_v) > most_v ||
       abs(inputs_.silent_device.drift_v) > most_v) {
-    fail(Status::kDcDrift, stream);
+    fail(Status::kDcDrift, stream, work);
     return;
   }
   stage_ = SweepStage::kCheckBefore;
-  begin_target(settings_.check_hz);
+  begin_target(settings_.check_hz, work);
 }
 
-double Sweep::aim_mps2() const noexcept {
-  const double wanted = level_scale_ * settings_.level_mps2;
-  const double most = (target_.is_close ? kLimitShare : kCautiousShare) * settings_.limit_mps2;
+double Sweep::aim_mps2(const SweepWorkspace& work) const noexcept {
+  const double wanted = work.level_scale_ * settings_.level_mps2;
+  const double most = (work.target_.is_close ? kLimitShare : kCautiousShare) * settings_.limit_mps2;
   return wanted < most ? wanted : most;
 }
 
-void Sweep::begin_target(double frequency_hz) noexcept {
-  target_ = Target();
-  target_.frequency_hz = frequency_hz;
-  level_scale_ = level_scale_ < 0.5 ? 2.0 * level_scale_ : 1.0;
+void Sweep::begin_target(double frequency_hz, SweepWorkspace& work) noexcept {
+  work.target_ = Target();
+  work.target_.frequency_hz = frequency_hz;
+  work.level_scale_ = work.level_scale_ < 0.5 ? 2.0 * work.level_scale_ : 1.0;
   // Whole periods, to the nearest frame.
-  const double period = format_.sample_rate_hz / frequency_hz;
+  const double period = work.format_.sample_rate_hz / frequency_hz;
   const double by_duration = floor(settings_.repeat_s * frequency_hz + 0.999999);
   const double by_cycles = static_cast<double>(settings_.cycles);
-  target_.repeat_frames = frames_of(period * (by_duration > by_cycles ? by_duration : by_cycles));
+  work.target_.repeat_frames =
+      frames_of(period * (by_duration > by_cycles ? by_duration : by_cycles));
   // A fit needs a full period and four samples.
-  while (static_cast<double>(target_.repeat_frames) < period || target_.repeat_frames < 4) {
-    ++target_.repeat_frames;
+  while (static_cast<double>(work.target_.repeat_frames) < period ||
+         work.target_.repeat_frames < 4) {
+    ++work.target_.repeat_frames;
   }
-  const double most_v = drive_.max_amplitude_v(frequency_hz);
-  double amplitude_v = drive_per_acceleration_ > 0.0 ? aim_mps2() * drive_per_acceleration_
-                                                     : kFirstDriveShare * settings_.drive_limit_v;
+  const double most_v = work.drive_.max_amplitude_v(frequency_hz);
+  double amplitude_v = work.drive_per_acceleration_ > 0.0
+                           ? aim_mps2(work) * work.drive_per_acceleration_
+                           : kFirstDriveShare * settings_.drive_limit_v;
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
-  drive_to(amplitude_v);
+  drive_to(amplitude_v, work);
 }
 
-void Sweep::drive_to(double amplitude_v) noexcept {
-  const double periods = kSettlePeriods / target_.frequency_hz;
+void Sweep::drive_to(double amplitude_v, SweepWorkspace& work) noexcept {
+  const double periods = kSettlePeriods / work.target_.frequency_hz;
   const double settle_s = settings_.settle_s > periods ? settings_.settle_s : periods;
-  settle_left_ = frames_of(settle_s * format_.sample_rate_hz);
-  left_ =
-      drive_.go_to(target_.frequency_hz, amplitude_v) + format_.latency_frames + settle_left_ + 1u;
-  activity_ = Activity::kSettling;
-  block_is_spent_ = true;
-  reference_monitor_.clear_equal_words();
-  device_monitor_.clear_equal_words();
+  work.settle_left_ = frames_of(settle_s * work.format_.sample_rate_hz);
+  work.left_ = work.drive_.go_to(work.target_.frequency_hz, amplitude_v) +
+               work.format_.latency_frames + work.settle_left_ + 1u;
+  work.activity_ = Activity::kSettling;
+  work.block_is_spent_ = true;
+  work.reference_monitor_.clear_equal_words();
+  work.device_monitor_.clear_equal_words();
 }
 
-void Sweep::begin_repeat() noexcept {
+void Sweep::begin_repeat(SweepWorkspace& work) noexcept {
   // The rates were checked by `start()`.
-  (void)reference_fit_.start(target_.frequency_hz, format_.sample_rate_hz);
-  (void)device_fit_.start(target_.frequency_hz, format_.sample_rate_hz);
-  left_ = target_.repeat_frames;
+  (void)work.reference_fit_.start(work.target_.frequency_hz, work.format_.sample_rate_hz);
+  (void)work.device_fit_.start(work.target_.frequency_hz, work.format_.sample_rate_hz);
+  work.left_ = work.target_.repeat_frames;
 }
 
-void Sweep::begin_next() noexcept {
+void Sweep::begin_next(SweepWorkspace& work) noexcept {
   if (stage_ == SweepStage::kCheckAfter) {
-    left_ = drive_.go_to(target_.frequency_hz, 0.0) + format_.latency_frames + 1u;
-    activity_ = Activity::kRampingDown;
-    block_is_spent_ = true;
+    work.left_ =
+        work.drive_.go_to(work.target_.frequency_hz, 0.0) + work.format_.latency_frames + 1u;
+    work.activity_ = Activity::kRampingDown;
+    work.block_is_spent_ = true;
     return;
   }
   if (point_count_ == settings_.frequency_count) {
     stage_ = SweepStage::kCheckAfter;
-    begin_target(settings_.check_hz);
+    begin_target(settings_.check_hz, work);
     return;
   }
   stage_ = SweepStage::kPoints;
-  begin_target(settings_.frequency_hz[point_count_]);
+  begin_target(settings_.frequency_hz[point_count_], work);
 }
 
-void Sweep::finish() noexcept {
-  const double volts = format_.input_full_scale_v;
-  inputs_.reference_step_v = volts * reference_monitor_.step();
-  inputs_.device_step_v = volts * device_monitor_.step();
+void Sweep::finish(SweepWorkspace& work) noexcept {
+  const double volts = work.format_.input_full_scale_v;
+  inputs_.reference_step_v = volts * work.reference_monitor_.step();
+  inputs_.device_step_v = volts * work.device_monitor_.step();
   const bool has_checks = norm(check_before_) > 0.0 && norm(check_after_) > 0.0;
   common_ = common_budget(settings_,
                           has_checks ? sqrt(norm(check_after_) / norm(check_before_)) - 1.0 : 0.0);
-  noise_ = pooled_noise(Span<const PointScatter>(scatter_).first(point_count_),
+  noise_ = pooled_noise(Span<const PointScatter>(work.scatter_).first(point_count_),
                         Span<const double>(settings_.frequency_hz).first(point_count_), inputs_);
   for (std::size_t i = 0; i < point_count_; ++i) {
     SweepPoint& point = points_[i];
     const PointVerdict verdict =
-        point_verdict(scatter_[i], point.point.frequency_hz, noise_, inputs_);
+        point_verdict(work.scatter_[i], point.point.frequency_hz, noise_, inputs_);
     point.budget = verdict.budget;
     point.residual_percent = verdict.residual_percent;
     point.flagged = point.flagged || verdict.scatters;

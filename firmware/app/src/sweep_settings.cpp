@@ -1,6 +1,7 @@
 // The default sweep, and words for every setting that cannot be used.
 #include "emax/app/sweep_settings.hpp"
 
+#include "emax/capacity.hpp"
 #include "emax/elementary.hpp"
 
 namespace emax::app {
@@ -33,7 +34,7 @@ bool is_within(double value, double low, double high) noexcept {
 
 SettingsError check_frequencies(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
   if (s.frequency_count < kMinPoints || s.frequency_count > kMaxPoints) {
-    return {"sweep frequencies", "3 to 64 frequencies"};
+    return {"sweep frequencies", "3 to " EMAX_TEXT_OF(EMAX_MAX_POINTS) " frequencies"};
   }
   const double highest = format.sample_rate_hz / kMinSamplesPerPeriod;
   for (std::size_t i = 0; i < s.frequency_count; ++i) {

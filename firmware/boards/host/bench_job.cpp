@@ -54,19 +54,19 @@ Problem BenchJob::run(const ReportOptions& options, ConsoleProgress& progress) {
                  options.bench.device.damping}};
   Status status = bench_.configure(options.bench);
   if (status == Status::kOk) {
-    status = sweep_.start(options.sweep, bench_);
+    status = sweep_.start(options.sweep, bench_, work_);
   }
   if (status != Status::kOk) {
     return fault("the bench does not start: " + in_line(explain(status)));
   }
   while (!sweep_.done()) {
     if (stop_requested()) {
-      sweep_.stop(bench_);
+      sweep_.stop(bench_, work_);
       break;
     }
     progress.show(stage_of(sweep_).c_str(), sweep_.progress());
     for (int i = 0; i < kBlocksPerLook && !sweep_.done(); ++i) {
-      sweep_.step(bench_);
+      sweep_.step(bench_, work_);
     }
   }
   return describe_end();

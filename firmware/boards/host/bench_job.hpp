@@ -11,7 +11,7 @@
 
 namespace emax::host {
 
-/// A bench with its sweep; 30 KiB.
+/// A bench with its sweep; 22 KiB.
 class BenchJob final {
  public:
   BenchJob() = default;
@@ -34,6 +34,7 @@ class BenchJob final {
 
   sim::SimBench bench_;
   app::Sweep sweep_;
+  app::SweepWorkspace work_;
   app::SimulatedBench simulated_;
 };
 

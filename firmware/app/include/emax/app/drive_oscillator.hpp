@@ -52,7 +52,7 @@ class DriveOscillator {
   double limit_v_ = 0.0;
   double step_v_ = 0.0;
   double frequency_hz_ = 0.0;
-  double step_cosine_ = 1.0;
+  double step_cosine_ = 0.0;
   double step_sine_ = 0.0;
   double start_turns_ = 0.0;  // Phase at the frame from which frames_ counts.
   std::uint64_t frames_ = 0;

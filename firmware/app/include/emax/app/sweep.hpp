@@ -11,6 +11,7 @@
 #include "emax/app/silence_record.hpp"
 #include "emax/app/sweep_budget.hpp"
 #include "emax/app/sweep_settings.hpp"
+#include "emax/capacity.hpp"
 #include "emax/complex.hpp"
 #include "emax/frequency_response.hpp"
 #include "emax/hal/analog_stream.hpp"
@@ -41,11 +42,65 @@ enum class SweepStage : std::uint8_t {
   kFailed,
 };
 
+/// What a sweep needs only while it runs: 11 KiB that the caller lends it.
+///
+/// What it holds before a start and after the end does not matter, so it may share its memory with
+/// other work that never runs at the same time.
+class SweepWorkspace {
+ private:
+  friend class Sweep;
+
+  enum class Activity : std::uint8_t { kSilence, kSettling, kMeasuring, kRampingDown };
+
+  /// One frequency while it is measured.
+  struct Target {
+    double frequency_hz = 0.0;
+    double acceleration_mps2 = 0.0;
+    std::uint32_t repeat_frames = 0;
+    std::uint32_t tries = 0;
+    bool was_suspect = false;
+    bool was_overrange = false;
+    bool is_close = false;  // The level of this frequency has been seen.
+  };
+
+  void begin(const hal::StreamFormat& format) noexcept;
+
+  hal::StreamFormat format_;
+  DriveOscillator drive_;
+  ChannelMonitor reference_monitor_;
+  ChannelMonitor device_monitor_;
+  SilenceRecord silence_;
+  SineFit reference_fit_;
+  SineFit device_fit_;
+  Target target_;
+  Repeats repeats_;
+  std::array<PointScatter, kMaxPoints> scatter_ = {};
+  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
+  std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
+  std::array<double, hal::kMaxBlockFrames> reference_v_ = {};
+  std::array<double, hal::kMaxBlockFrames> device_v_ = {};
+  Complex last_ratio_;                   // Of the frequency before; zero if there was none.
+  double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
+  double level_scale_ = 0.0;             // 1; overrange halves it.
+  double first_reference_offset_v_ = 0.0;
+  double first_device_offset_v_ = 0.0;
+  double reference_rest2_ = 0.0;  // Sums of the squares of the repeats' residuals.
+  double device_rest2_ = 0.0;
+  std::uint32_t left_ = 0;         // Frames until this activity ends.
+  std::uint32_t settle_left_ = 0;  // When this few frames are left, the ramp has passed.
+  Activity activity_ = Activity::kSilence;
+  bool block_is_spent_ = false;  // A new drive was ordered: the rest of the block is of no use.
+  bool is_lowering_ = false;
+};
+
+static_assert(std::is_trivially_copyable_v<SweepWorkspace>);
+static_assert(!kHasDefaultCapacities || sizeof(SweepWorkspace) <= 11 * 1024);
+
 /// Runs the calibration block by block; nothing ever waits longer than one block.
 ///
-///     sweep.start(settings, stream);
+///     sweep.start(settings, stream, workspace);
 ///     while (!sweep.done()) {
-///       sweep.step(stream);
+///       sweep.step(stream, workspace);
 ///     }
 ///
 /// At each frequency the drive moves to the amplitude that the last one needed per acceleration,
@@ -54,7 +109,9 @@ enum class SweepStage : std::uint8_t {
 /// begins anew. Overrange halves the drive and with it the level, for this frequency and, doubling
 /// again, for those after it.
 ///
-/// At most 20 KiB, whatever the number of samples, and no call takes longer for a longer record.
+/// Results take at most 11 KiB and the workspace as much, whatever the number of samples, and no
+/// call takes longer for a longer record. From its start to its end a sweep needs the same stream
+/// and the same workspace, which nobody else may write meanwhile.
 /// Every end, good or bad, leaves the drive at zero: a normal one along a ramp, a fault along the
 /// permitted slope within 256 frames.
 class Sweep {
@@ -67,14 +124,15 @@ class Sweep {
   ///   changed.
   /// * kAlreadyRunning: A sweep runs. Nothing has changed.
   /// * Else what the stream answered. Nothing has changed.
-  Status start(const SweepSettings& settings, hal::AnalogStream& stream) noexcept;
+  Status start(const SweepSettings& settings, hal::AnalogStream& stream,
+               SweepWorkspace& work) noexcept;
 
   /// Exchanges one block; nothing unless a sweep runs.
-  void step(hal::AnalogStream& stream) noexcept;
+  void step(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
 
   /// Ends the sweep at once: the drive is led to zero; what was measured stays. Status kStopped.
   /// Nothing unless a sweep runs.
-  void stop(hal::AnalogStream& stream) noexcept;
+  void stop(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
 
   /// @returns True unless a sweep runs.
   bool done() const noexcept {
@@ -135,18 +193,8 @@ class Sweep {
   /// What noise hardly ever exceeds, in standard deviations.
   static constexpr double kNoisePeak = 6.0;
 
-  enum class Activity : std::uint8_t { kSilence, kSettling, kMeasuring, kRampingDown };
-
-  /// One frequency while it is measured.
-  struct Target {
-    double frequency_hz = 0.0;
-    double acceleration_mps2 = 0.0;
-    std::uint32_t repeat_frames = 0;
-    std::uint32_t tries = 0;
-    bool was_suspect = false;
-    bool was_overrange = false;
-    bool is_close = false;  // The level of this frequency has been seen.
-  };
+  using Activity = SweepWorkspace::Activity;
+  using Target = SweepWorkspace::Target;
 
   /// What one repeat's fit says of one channel.
   struct Reading {
@@ -157,76 +205,54 @@ class Sweep {
   };
 
   void reset() noexcept;
-  void take_frames(hal::AnalogStream& stream) noexcept;
-  void watch(hal::AnalogStream& stream) noexcept;
-  void lower_level(hal::AnalogStream& stream) noexcept;
-  void consume(std::size_t from, std::size_t count) noexcept;
-  void end_activity(hal::AnalogStream& stream) noexcept;
-  void end_silence(hal::AnalogStream& stream) noexcept;
-  void begin_target(double frequency_hz) noexcept;
-  void drive_to(double amplitude_v) noexcept;
-  void begin_repeat() noexcept;
-  void end_repeat(hal::AnalogStream& stream) noexcept;
-  Reading reading_of(const SineFit& fit, const SilentChannel& silent) const noexcept;
-  void judge_first(const Reading& reference, const Reading& device,
-                   hal::AnalogStream& stream) noexcept;
-  void raise_drive(hal::AnalogStream& stream) noexcept;
-  double offset_change_v(double reference_v, double device_v) const noexcept;
-  Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
-  void suspect(Status status, hal::AnalogStream& stream) noexcept;
-  void end_target(hal::AnalogStream& stream) noexcept;
-  Status plausibility_of(Complex ratio) const noexcept;
-  void store_point(const PointScatter& scatter, Complex ratio) noexcept;
-  void begin_next() noexcept;
-  void fail(Status status, hal::AnalogStream& stream) noexcept;
-  void finish() noexcept;
-  double acceleration_of(double reference_v) const noexcept;
-  double aim_mps2() const noexcept;
-  double ratio_factor() const noexcept;
-  Complex ratio_of(const PointScatter& scatter) const noexcept;
+  void take_frames(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void lower_level(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  static void consume(std::size_t from, std::size_t count, SweepWorkspace& work) noexcept;
+  void end_activity(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void end_silence(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void begin_target(double frequency_hz, SweepWorkspace& work) noexcept;
+  void drive_to(double amplitude_v, SweepWorkspace& work) noexcept;
+  static void begin_repeat(SweepWorkspace& work) noexcept;
+  void end_repeat(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  static Reading reading_of(const SineFit& fit, const SilentChannel& silent,
+                            const SweepWorkspace& work) noexcept;
+  void judge_first(const Reading& reference, const Reading& device, hal::AnalogStream& stream,
+                   SweepWorkspace& work) noexcept;
+  void raise_drive(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  double offset_change_v(double reference_v, double device_v,
+                         const SweepWorkspace& work) const noexcept;
+  Status disturbance_of(const Reading& reference, const Reading& device,
+                        const SweepWorkspace& work) const noexcept;
+  void suspect(Status status, hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void end_target(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  Status plausibility_of(Complex ratio, const SweepWorkspace& work) const noexcept;
+  void store_point(const PointScatter& scatter, Complex ratio, SweepWorkspace& work) noexcept;
+  void begin_next(SweepWorkspace& work) noexcept;
+  void fail(Status status, hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  void finish(SweepWorkspace& work) noexcept;
+  double acceleration_of(double reference_v, const SweepWorkspace& work) const noexcept;
+  double aim_mps2(const SweepWorkspace& work) const noexcept;
+  double ratio_factor(const SweepWorkspace& work) const noexcept;
+  Complex ratio_of(const PointScatter& scatter, const SweepWorkspace& work) const noexcept;
 
-  SweepSettings settings_;
-  hal::StreamFormat format_;
-  DriveOscillator drive_;
-  ChannelMonitor reference_monitor_;
-  ChannelMonitor device_monitor_;
-  SilenceRecord silence_;
-  SineFit reference_fit_;
-  SineFit device_fit_;
-  Target target_;
-  Repeats repeats_;
+  SweepSettings settings_ = SweepSettings(kAllZero);
   BudgetInputs inputs_;
   std::array<SweepPoint, kMaxPoints> points_ = {};
-  std::array<PointScatter, kMaxPoints> scatter_ = {};
-  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
-  std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
-  std::array<double, hal::kMaxBlockFrames> reference_v_ = {};
-  std::array<double, hal::kMaxBlockFrames> device_v_ = {};
   CommonBudget common_;
   ChannelNoise noise_;
   SettingsError refused_;
-  Complex last_ratio_;  // Of the frequency before; zero if there was none.
   Complex check_before_;
   Complex check_after_;
   double failed_frequency_hz_ = 0.0;
-  double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
-  double level_scale_ = 1.0;             // Overrange halves it.
-  double first_reference_offset_v_ = 0.0;
-  double first_device_offset_v_ = 0.0;
-  double reference_rest2_ = 0.0;  // Sums of the squares of the repeats' residuals.
-  double device_rest2_ = 0.0;
   std::uint64_t blocks_ = 0;
   std::size_t point_count_ = 0;
-  std::uint32_t left_ = 0;         // Frames until this activity ends.
-  std::uint32_t settle_left_ = 0;  // When this few frames are left, the ramp has passed.
   SweepStage stage_ = SweepStage::kIdle;
-  Activity activity_ = Activity::kSilence;
   Status status_ = Status::kOk;
-  bool block_is_spent_ = false;  // A new drive was ordered: the rest of the block is of no use.
-  bool is_lowering_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<Sweep>);
-static_assert(sizeof(Sweep) <= 20 * 1024);
+static_assert(!kHasDefaultCapacities || sizeof(Sweep) <= 11 * 1024);
+static_assert(!kHasDefaultCapacities || sizeof(Sweep) + sizeof(FrequencyResponse) <= 16 * 1024);
 
 }  // namespace emax::app

@@ -29,6 +29,10 @@ struct ReferenceCalibration {
 /// @returns S_r at this frequency in V/(m/s^2).
 double sensitivity_at(const ReferenceCalibration& calibration, double frequency_hz) noexcept;
 
+/// Selects a constructor that sets every number to zero.
+struct AllZero {};
+inline constexpr AllZero kAllZero = {};
+
 /// `SweepSettings{}` is the default job: the 42 frequencies of the paper's Table 1.
 struct SweepSettings {
   std::array<double, kMaxPoints> frequency_hz;  ///< Ascending.
@@ -53,6 +57,26 @@ struct SweepSettings {
   double expected_sensitivity = 1.02;
 
   SweepSettings() noexcept;
+  /// No settings yet, every number zero: for objects that are to lie in .bss. `check()` refuses it.
+  constexpr explicit SweepSettings(AllZero) noexcept
+      : frequency_hz{},
+        frequency_count(0),
+        level_mps2(0.0),
+        limit_mps2(0.0),
+        drive_limit_v(0.0),
+        slew_v_per_s(0.0),
+        settle_s(0.0),
+        cycles(0),
+        repeat_s(0.0),
+        repeats(0),
+        reference{{}, {}, 0, 0.0},
+        reference_gain(0.0),
+        device_gain(0.0),
+        gain_expanded_percent(0.0),
+        mounting_expanded_percent(0.0),
+        skew_s(0.0),
+        check_hz(0.0),
+        expected_sensitivity(0.0) {}
 };
 
 inline constexpr double kPlausibleFactor = 3.0;
