@@ -23,18 +23,16 @@ double row_sum_norm(const Matrix& matrix) noexcept {
   return norm;
 }
 
-Matrix product(const Matrix& left, const Matrix& right) noexcept {
-  Matrix result = {};
+void square(const Matrix& matrix, Matrix& result) noexcept {
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     for (std::size_t j = 0; j < kMatrixOrder; ++j) {
       double sum = 0.0;
       for (std::size_t k = 0; k < kMatrixOrder; ++k) {
-        sum += left[i][k] * right[k][j];
+        sum += matrix[i][k] * matrix[k][j];
       }
       result[i][j] = sum;
     }
   }
-  return result;
 }
 
 /// One step of Horner's rule, result = 1 + (matrix * result) / divisor, column by column so that no
@@ -57,7 +55,7 @@ void horner_step(const Matrix& matrix, double divisor, Matrix& result) noexcept 
 
 }  // namespace
 
-void exponentiate(Matrix& matrix) noexcept {
+void exponentiate(Matrix& matrix, Matrix& scratch) noexcept {
   int halvings = 0;
   double scale = 1.0;
   for (double norm = row_sum_norm(matrix); norm > kScaledNorm && halvings < kMaxHalvings;
@@ -65,20 +63,20 @@ void exponentiate(Matrix& matrix) noexcept {
     scale *= 0.5;
     ++halvings;
   }
-  Matrix result = {};
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     for (double& element : matrix[i]) {
       element *= scale;
     }
-    result[i][i] = 1.0;
+    scratch[i].fill(0.0);
+    scratch[i][i] = 1.0;
   }
   for (int term = kTaylorTerms; term >= 1; --term) {
-    horner_step(matrix, term, result);
+    horner_step(matrix, term, scratch);
   }
-  matrix = result;
+  matrix = scratch;
   for (; halvings > 0; --halvings) {
-    result = product(matrix, matrix);
-    matrix = result;
+    square(matrix, scratch);
+    matrix = scratch;
   }
 }
 

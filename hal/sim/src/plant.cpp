@@ -2,7 +2,6 @@
 #include "emax/sim/plant.hpp"
 
 #include "emax/elementary.hpp"
-#include "emax/sim/matrix_exponential.hpp"
 #include "emax/units.hpp"
 
 namespace emax::sim {
@@ -37,70 +36,57 @@ bool damping_ok(double damping) noexcept {
   return damping >= kMinDamping && damping <= kMaxDamping;
 }
 
-using Row = std::array<double, kMatrixOrder>;
-
-/// Rows of one pair, driven by `input`, a row of weights over all states.
-void add_pair(Matrix& matrix, std::size_t at, double frequency_hz, double damping,
-              const Row& input) noexcept {
+/// Rows of one pair that nothing drives.
+void add_pair(Matrix& matrix, std::size_t at, double frequency_hz, double damping) noexcept {
   const double omega = kTwoPi * frequency_hz;
   matrix[at][at + 1] = omega;
-  for (std::size_t j = 0; j < kMatrixOrder; ++j) {
-    matrix[at + 1][j] = omega * input[j];
-  }
   matrix[at + 1][at] = -omega;
   matrix[at + 1][at + 1] = -2.0 * damping * omega;
 }
 
-Row unit_row(std::size_t at) noexcept {
-  Row row = {};
-  row[at] = 1.0;
-  return row;
+/// Drives the pair at `to` by this state, times `weight`.
+void connect(Matrix& matrix, std::size_t from, std::size_t to, double weight) noexcept {
+  matrix[to + 1][from] = matrix[to][to + 1] * weight;
 }
 
-/// The acceleration for a gain of 1: the suspension's high-pass output. The gain is left to the
-/// outputs, so that it does not matter to the exponential.
-Row acceleration_row(const Shaker& shaker) noexcept {
-  Row row = {};
-  row[kArmature] = 1.0;
-  row[kSuspension] = -1.0;
-  row[kSuspension + 1] = -2.0 * shaker.suspension_damping;
-  return row;
+/// Of a state in the acceleration for a gain of 1: the suspension's high-pass output. The gain is
+/// left to the outputs, so that it does not matter to the exponential.
+double acceleration_weight(std::size_t state, const Shaker& shaker) noexcept {
+  switch (state) {
+    case kArmature:
+      return 1.0;
+    case kSuspension:
+      return -1.0;
+    case kSuspension + 1:
+      return -2.0 * shaker.suspension_damping;
+    default:
+      return 0.0;
+  }
 }
 
-Matrix continuous(const Device& device, const Shaker& shaker) noexcept {
-  Matrix matrix = {};
-  add_pair(matrix, kReconstruction1, shaker.reconstruction_hz, kReconstructionDamping1,
-           unit_row(kDrive));
-  add_pair(matrix, kReconstruction2, shaker.reconstruction_hz, kReconstructionDamping2,
-           unit_row(kReconstruction1));
-  add_pair(matrix, kArmature, shaker.armature_hz, shaker.armature_damping,
-           unit_row(kReconstruction2));
-  add_pair(matrix, kSuspension, shaker.suspension_hz, shaker.suspension_damping,
-           unit_row(kArmature));
-  add_pair(matrix, kDevice, device.natural_frequency_hz, device.damping, acceleration_row(shaker));
-  return matrix;
+/// The rates of change of all states.
+void assemble(const Device& device, const Shaker& shaker, Matrix& matrix) noexcept {
+  matrix = {};
+  add_pair(matrix, kReconstruction1, shaker.reconstruction_hz, kReconstructionDamping1);
+  add_pair(matrix, kReconstruction2, shaker.reconstruction_hz, kReconstructionDamping2);
+  add_pair(matrix, kArmature, shaker.armature_hz, shaker.armature_damping);
+  add_pair(matrix, kSuspension, shaker.suspension_hz, shaker.suspension_damping);
+  add_pair(matrix, kDevice, device.natural_frequency_hz, device.damping);
+  connect(matrix, kDrive, kReconstruction1, 1.0);
+  connect(matrix, kReconstruction1, kReconstruction2, 1.0);
+  connect(matrix, kReconstruction2, kArmature, 1.0);
+  connect(matrix, kArmature, kSuspension, 1.0);
+  for (std::size_t from = kArmature; from < kDevice; ++from) {
+    connect(matrix, from, kDevice, acceleration_weight(from, shaker));
+  }
 }
 
-/// e^(matrix * time).
-Matrix after(const Matrix& matrix, double time_s) noexcept {
-  Matrix result = matrix;
-  for (auto& row : result) {
+void scale(double factor, Matrix& matrix) noexcept {
+  for (auto& row : matrix) {
     for (double& element : row) {
-      element *= time_s;
+      element *= factor;
     }
   }
-  exponentiate(result);
-  return result;
-}
-
-Row product(double factor, const Row& row, const Matrix& matrix) noexcept {
-  Row result = {};
-  for (std::size_t i = 0; i < kMatrixOrder; ++i) {
-    for (std::size_t j = 0; j < kMatrixOrder; ++j) {
-      result[j] += factor * row[i] * matrix[i][j];
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -123,16 +109,31 @@ Status Plant::configure(const Device& device, const Shaker& shaker, double inter
   if (!is_finite(device.sensitivity) || !is_finite(shaker.gain)) {
     return Status::kInvalidArgument;
   }
-  const Matrix matrix = continuous(device, shaker);
-  const Matrix whole = after(matrix, interval_s);
-  for (std::size_t j = 0; j <= kStates; ++j) {
-    for (std::size_t i = 0; i < kStates; ++i) {
-      transition_[j][i] = whole[i][j];
+  // One matrix on the stack, the other is the one that comes last.
+  Matrix matrix;
+  const auto pass = [&](double time_s) {
+    assemble(device, shaker, matrix);
+    scale(time_s, matrix);
+    exponentiate(matrix, transition_);
+  };
+  pass(0.5 * interval_s);
+  acceleration_ = {};
+  for (std::size_t state = kArmature; state < kDevice; ++state) {
+    const double weight = shaker.gain * acceleration_weight(state, shaker);
+    for (std::size_t j = 0; j < kMatrixOrder; ++j) {
+      acceleration_[j] += weight * matrix[state][j];
     }
   }
-  acceleration_ = product(shaker.gain, acceleration_row(shaker), after(matrix, 0.5 * interval_s));
-  device_ = product(shaker.gain * device.sensitivity, unit_row(kDevice),
-                    after(matrix, 0.5 * interval_s + skew_s));
+  pass(0.5 * interval_s + skew_s);
+  for (std::size_t j = 0; j < kMatrixOrder; ++j) {
+    device_[j] = shaker.gain * device.sensitivity * matrix[kDevice][j];
+  }
+  pass(interval_s);
+  for (std::size_t i = 0; i < kMatrixOrder; ++i) {
+    for (std::size_t j = 0; j < kMatrixOrder; ++j) {
+      transition_[j][i] = matrix[i][j];
+    }
+  }
   state_ = {};
   return Status::kOk;
 }

@@ -233,8 +233,11 @@ bool SimBench::event_due(FaultKind kind) noexcept {
 
 Frame SimBench::advance(Word word) noexcept {
   record(word);
-  pipeline_[clock_ % pipeline_.size()] = word;
-  const Word at_dac = pipeline_[(clock_ - format().latency_frames) % pipeline_.size()];
+  const auto slot = [this](std::uint64_t frame) {
+    return static_cast<std::size_t>(frame % pipeline_.size());
+  };
+  pipeline_[slot(clock_)] = word;
+  const Word at_dac = pipeline_[slot(clock_ - format().latency_frames)];
   if (clock_ % kRefreshFrames == 0) {
     refresh();
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "emax/sim/matrix_exponential.hpp"
 #include "emax/status.hpp"
 
 namespace emax::sim {
@@ -38,8 +39,8 @@ struct PlantOutput {
 /// (zero-order hold). Its matrix exponential is computed once, so a step is exact to rounding
 /// whatever the sampling rate; so are the outputs at any instant within the interval.
 ///
-/// Ten states in five pairs; each pair is driven by those before it only. 1.1 KiB. One step: 90
-/// multiplications.
+/// Ten states in five pairs; each pair is driven by those before it only. 1.2 KiB. One step: 90
+/// multiplications. Setting it up takes 1.3 KiB of stack with what it calls.
 class Plant {
  public:
   /// Sets the system up, at rest.
@@ -62,11 +63,11 @@ class Plant {
 
  private:
   static constexpr std::size_t kStates = 10;
-  /// Columns of a matrix, so that a step adds columns times numbers.
-  using Columns = std::array<std::array<double, kStates>, kStates + 1>;
+  /// The last state is the held voltage.
   using Row = std::array<double, kStates + 1>;
+  static_assert(kStates + 1 == kMatrixOrder);
 
-  Columns transition_ = {};  ///< The last column is that of the held voltage; so in the rows.
+  Matrix transition_ = {};  ///< By columns, so that a step adds columns times numbers.
   Row acceleration_ = {};
   Row device_ = {};
   std::array<double, kStates> state_ = {};
