@@ -16,14 +16,14 @@ using Unit = std::array<std::uint8_t, kMaxUnitBytes>;
 
 }  // namespace
 
-Status Store::read(std::uint32_t slot, Span<std::uint8_t> bytes) noexcept {
-  if (!holds(slot, bytes.size())) {
+Status Store::read(std::uint32_t slot, std::uint32_t offset, Span<std::uint8_t> bytes) noexcept {
+  if (!holds(slot, bytes.size()) || offset > format_.slot_bytes - bytes.size()) {
     return Status::kInvalidArgument;
   }
   if (bytes.empty()) {
     return Status::kOk;
   }
-  return do_read(slot, 0, bytes) == Status::kOk ? Status::kOk : Status::kHardwareFault;
+  return do_read(slot, offset, bytes) == Status::kOk ? Status::kOk : Status::kHardwareFault;
 }
 
 Status Store::write(std::uint32_t slot, Span<const std::uint8_t> bytes) noexcept {

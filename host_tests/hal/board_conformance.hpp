@@ -183,7 +183,7 @@ Violations<WatchdogClause> violated_by_watchdog(const Make& make) {
 enum class StoreClause : std::uint8_t {
   kFormat,      ///< Within its ranges.
   kRange,       ///< A wrong slot or size: kInvalidArgument, nothing has changed.
-  kKeeps,       ///< What was written is read, at any length, once and again.
+  kKeeps,       ///< What was written is read, at any length and offset, once and again.
   kRestErased,  ///< Behind it is kErasedByte.
   kSlotsApart,  ///< A write touches no other slot.
   kCut,         ///< Nor does a cut one, at whatever byte; the slot can be written again.
@@ -227,7 +227,16 @@ Violations<StoreClause> violated_by_store(Bench& bench) {
     Bytes found(count, 0x55);
     bytes.resize(most, hal::kErasedByte);
     bytes.resize(count);
-    return store.read(slot, {found.data(), found.size()}) == Status::kOk && found == bytes;
+    bool same = store.read(slot, {found.data(), found.size()}) == Status::kOk && found == bytes;
+    for (std::size_t offset = 0; offset <= count; offset += count / 3 + 1) {
+      Bytes piece(count - offset, 0x55);
+      same = same &&
+             store.read(slot, static_cast<std::uint32_t>(offset), {piece.data(), piece.size()}) ==
+                 Status::kOk &&
+             std::equal(piece.begin(), piece.end(),
+                        bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+    }
+    return same;
   };
 
   const std::uint32_t last = format.slot_count - 1;
@@ -251,6 +260,8 @@ Violations<StoreClause> violated_by_store(Bench& bench) {
           write(0, Bytes(most + 1, 0)) == Status::kInvalidArgument &&
           store.read(format.slot_count, {untouched.data(), 1}) == Status::kInvalidArgument &&
           store.read(0, {untouched.data(), most + 1}) == Status::kInvalidArgument &&
+          store.read(0, 1, {untouched.data(), most}) == Status::kInvalidArgument &&
+          store.read(0, 0xFFFFFFFFU, {untouched.data(), 1}) == Status::kInvalidArgument &&
           untouched == Bytes(most + 1, 0x55) && holds(0, now, most) && holds(last, kept, most),
       C::kRange);
 

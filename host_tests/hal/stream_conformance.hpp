@@ -274,7 +274,7 @@ class StreamRun {
     words.resize(words.size() / block() * block());
     for (std::size_t i = 0; i < words.size(); i += block()) {
       const auto first = words.begin() + static_cast<std::ptrdiff_t>(i);
-      if (!good({first, first + block()})) {
+      if (!good({first, first + static_cast<std::ptrdiff_t>(block())})) {
         return false;
       }
     }

@@ -278,8 +278,9 @@ class BrokenStore {
     return has(StoreClause::kFormat) ? StoreFormat{3, 63, 8} : kStoreFormat;
   }
 
-  Status read(std::uint32_t slot, Span<std::uint8_t> bytes) {
-    const Status status = store_.read(slot, bytes);
+  Status read(std::uint32_t slot, Span<std::uint8_t> bytes) { return read(slot, 0, bytes); }
+  Status read(std::uint32_t slot, std::uint32_t offset, Span<std::uint8_t> bytes) {
+    const Status status = store_.read(slot, offset, bytes);
     if (has(StoreClause::kRange) && status == Status::kInvalidArgument && !bytes.empty()) {
       bytes[0] = 0;
     }

@@ -97,9 +97,12 @@ class Loopback {
   /// One word through the DAC, and what comes in meanwhile.
   hal::Frame tick(hal::Word word) {
     put(word);
-    line_[index_ % line_.size()] = word;
+    const auto slot = [this](std::uint64_t index) {
+      return static_cast<std::size_t>(index % line_.size());
+    };
+    line_[slot(index_)] = word;
     const hal::Word delayed =
-        index_ < latency_frames_ ? 0 : line_[(index_ - latency_frames_) % line_.size()];
+        index_ < latency_frames_ ? 0 : line_[slot(index_ - latency_frames_)];
     ++index_;
     const std::int64_t unused = std::int64_t{1} << (32U - kLoopbackInputBits);
     const std::int64_t converted = delayed - ((delayed % unused) + unused) % unused;

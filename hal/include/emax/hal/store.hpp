@@ -33,16 +33,21 @@ class Store {
 
   const StoreFormat& format() const noexcept { return format_; }
 
-  /// Reads the front of a slot.
+  /// Reads from a slot.
   ///
-  /// @param[out] bytes At most `slot_bytes`. What was never written since the slot was erased reads
-  ///                   as kErasedByte.
+  /// @param[in]  offset At which byte of the slot to begin.
+  /// @param[out] bytes  At most what the slot has from there on. What was never written since the
+  ///                    slot was erased reads as kErasedByte.
   /// @returns
   /// * kOk: `bytes` is filled.
-  /// * kInvalidArgument: No such slot, or more bytes than it has. `bytes` is untouched.
+  /// * kInvalidArgument: No such slot, or it ends before that. `bytes` is untouched.
   /// * kHardwareFault: The memory does not answer, or what it answers cannot be corrected. `bytes`
   ///   is not to be used.
-  Status read(std::uint32_t slot, Span<std::uint8_t> bytes) noexcept;
+  Status read(std::uint32_t slot, std::uint32_t offset, Span<std::uint8_t> bytes) noexcept;
+  /// The same from the front of the slot.
+  Status read(std::uint32_t slot, Span<std::uint8_t> bytes) noexcept {
+    return read(slot, 0, bytes);
+  }
 
   /// Erases a slot, programs its front unit by unit in ascending order, and reads it back. The rest
   /// of the slot is erased; no bytes at all only erase it.
