@@ -1,0 +1,53 @@
+// The errors that SYSTem:ERRor? reads, oldest first.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/app/scpi/error_code.hpp"
+#include "emax/span.hpp"
+
+namespace emax::app::scpi {
+
+/// One error with the text that caused it.
+struct ErrorEntry {
+  static constexpr std::size_t kContextCapacity = 40;
+
+  ErrorCode code = ErrorCode::kNoError;
+  std::uint8_t context_length = 0;
+  char context[kContextCapacity] = {};  ///< Printable; not terminated.
+
+  Span<const char> context_text() const noexcept { return {context, context_length}; }
+};
+
+/// A queue of 16 errors. When it is full the last one becomes -350,"Queue overflow" and new ones
+/// are dropped until one is read. 0.7 KiB.
+class ErrorQueue {
+ public:
+  static constexpr std::size_t kCapacity = 16;
+
+  /// @param[in] context What was wrong, often the offending text; may be empty. Cut to 40
+  ///                    characters; what is not printable becomes a point.
+  /// @returns False if the queue was full.
+  bool push(ErrorCode code, Span<const char> context) noexcept;
+  /// Takes the oldest error off the queue.
+  ///
+  /// @returns kNoError, without context, if there is none.
+  ErrorEntry pop() noexcept;
+  void clear() noexcept;
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+  /// @returns False only if memory was overwritten.
+  bool consistent() const noexcept;
+
+ private:
+  std::array<ErrorEntry, kCapacity> entries_ = {};
+  std::uint8_t first_ = 0;
+  std::uint8_t size_ = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<ErrorQueue>);
+
+}  // namespace emax::app::scpi

@@ -1,0 +1,219 @@
+// Fields of answers into the output memory, and their way out of it.
+#include "emax/app/scpi/response.hpp"
+
+#include "emax/app/scpi/pattern.hpp"
+#include "emax/decimal.hpp"
+#include "emax/elementary.hpp"
+
+namespace emax::app::scpi {
+namespace {
+
+constexpr std::size_t kLongestNumber = 24;
+constexpr std::size_t kLongestInteger = 20;
+constexpr int kExactDigits = 17;
+
+std::size_t length_of(const char* words) noexcept {
+  std::size_t length = 0;
+  while (words[length] != '\0') {
+    ++length;
+  }
+  return length;
+}
+
+/// Writes the digits to the end of the memory and answers where they begin.
+std::size_t put_digits(std::uint64_t value, char (&digits)[kLongestInteger]) noexcept {
+  std::size_t first = kLongestInteger;
+  do {
+    digits[--first] = static_cast<char>('0' + value % 10);
+    value /= 10;
+  } while (value != 0);
+  return first;
+}
+
+}  // namespace
+
+Response& Response::number(double value) noexcept {
+  if (value != value) {
+    return word("9.91E37");
+  }
+  if (!is_finite(value)) {
+    return word(value > 0.0 ? "9.9E37" : "-9.9E37");
+  }
+  char text[kLongestNumber];
+  const std::size_t length = format_general(value, kExactDigits, text);
+  return word(Span<const char>(text, length));
+}
+
+Response& Response::integer(std::int64_t value) noexcept {
+  separate();
+  if (value < 0) {
+    put("-", 1);
+  }
+  const auto bits = static_cast<std::uint64_t>(value);
+  char digits[kLongestInteger];
+  const std::size_t first = put_digits(value < 0 ? 0 - bits : bits, digits);
+  put(digits + first, kLongestInteger - first);
+  return *this;
+}
+
+Response& Response::word(const char* word) noexcept {
+  separate();
+  put(word, length_of(word));
+  return *this;
+}
+
+Response& Response::word(Span<const char> word) noexcept {
+  separate();
+  put(word.data(), word.size());
+  return *this;
+}
+
+Response& Response::short_form(const char* pattern) noexcept {
+  return word(Span<const char>(pattern, short_form_length(pattern, length_of(pattern))));
+}
+
+Response& Response::string(Span<const char> text) noexcept {
+  separate();
+  put("\"", 1);
+  put_quoted(text);
+  put("\"", 1);
+  return *this;
+}
+
+Response& Response::string(const char* text, Span<const char> context) noexcept {
+  separate();
+  put("\"", 1);
+  put_quoted(Span<const char>(text, length_of(text)));
+  if (!context.empty()) {
+    put(";", 1);
+    put_quoted(context);
+  }
+  put("\"", 1);
+  return *this;
+}
+
+Response& Response::block_header(std::size_t length) noexcept {
+  separate();
+  char digits[kLongestInteger];
+  const std::size_t first = put_digits(length, digits);
+  const std::size_t count = kLongestInteger - first;
+  const char head[2] = {'#', static_cast<char>('0' + count)};
+  put(head, sizeof head);
+  put(digits + first, count);
+  return *this;
+}
+
+Response& Response::block(Span<const char> bytes) noexcept {
+  block_header(bytes.size());
+  block_ = fits_ ? bytes : block_;
+  return *this;
+}
+
+Response& Response::piece(Span<const char> characters) noexcept {
+  put(characters.data(), characters.size());
+  return *this;
+}
+
+Span<const char> Response::pending() const noexcept {
+  if (begin_ == end_) {
+    return block_;
+  }
+  return {text_ + begin_, static_cast<std::size_t>(end_ - begin_)};
+}
+
+void Response::consume(std::size_t count) noexcept {
+  if (begin_ == end_) {
+    block_ = block_.from(count);
+    return;
+  }
+  begin_ = static_cast<std::uint16_t>(begin_ + count);
+  if (begin_ == end_) {
+    begin_ = 0;
+    end_ = 0;
+  }
+}
+
+void Response::begin_answer(std::size_t limit) noexcept {
+  has_field_ = false;
+  begin_item(limit);
+}
+
+void Response::begin_item(std::size_t limit) noexcept {
+  if (begin_ > 0) {
+    for (std::size_t i = begin_; i < end_; ++i) {
+      text_[i - begin_] = text_[i];
+    }
+    end_ = static_cast<std::uint16_t>(end_ - begin_);
+    begin_ = 0;
+  }
+  mark_ = end_;
+  limit_ = static_cast<std::uint16_t>(limit);
+  was_open_ = open_;
+  had_field_ = has_field_;
+  had_block_ = holds_block();
+  fits_ = true;
+}
+
+void Response::drop_answer() noexcept {
+  end_ = mark_;
+  block_ = had_block_ ? block_ : Span<const char>();
+  open_ = was_open_;
+  has_field_ = had_field_;
+  fits_ = true;
+}
+
+void Response::end_message() noexcept {
+  if (!open_) {
+    return;
+  }
+  begin_item(1);
+  put("\n", 1);
+  open_ = false;
+  has_field_ = false;
+}
+
+void Response::clear() noexcept {
+  block_ = {};
+  begin_ = 0;
+  end_ = 0;
+  mark_ = 0;
+  open_ = false;
+  has_field_ = false;
+  fits_ = true;
+}
+
+bool Response::consistent() const noexcept {
+  return begin_ <= end_ && end_ <= kCapacity && (begin_ < end_ || (begin_ == 0 && end_ == 0));
+}
+
+void Response::put(const char* characters, std::size_t count) noexcept {
+  if (!fits_ || count > kCapacity - end_ || end_ + count > mark_ + std::size_t{limit_}) {
+    fits_ = false;
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    text_[end_ + i] = characters[i];
+  }
+  end_ = static_cast<std::uint16_t>(end_ + count);
+}
+
+void Response::put_quoted(Span<const char> text) noexcept {
+  for (const char& character : text) {
+    if (character == '"') {
+      put("\"", 1);
+    }
+    put(&character, 1);
+  }
+}
+
+void Response::separate() noexcept {
+  if (has_field_) {
+    put(",", 1);
+  } else if (open_) {
+    put(";", 1);
+  }
+  has_field_ = true;
+  open_ = true;
+}
+
+}  // namespace emax::app::scpi
