@@ -19,6 +19,9 @@ using emax::ResponsePoint;
 using emax::app::Evaluation;
 using emax::app::GainMode;
 using emax::app::reduced_chi_square_limit;
+using emax::app::ReportContext;
+using emax::app::ReportPart;
+using emax::app::ReportSection;
 using emax::app::Settings;
 using emax::app::TextWriter;
 using emax::test::evaluated;
@@ -28,8 +31,8 @@ using emax::test::synthetic_points;
 using emax::test::table1;
 using emax::test::text_of;
 
-std::string report_of(const Evaluation& evaluation, const char* name = nullptr) {
-  return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, name, out); });
+std::string report_of(const Evaluation& evaluation, const ReportContext& context = {}) {
+  return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, context, out); });
 }
 
 bool says(const std::string& report, const std::string& words) {
@@ -65,7 +68,7 @@ void expect_well_formed(const std::string& report) {
 TEST(Report, Table1) {
   Settings settings = quick_settings();
   settings.trend_count = 2;
-  const std::string report = report_of(evaluated(table1(), settings), "djb.csv");
+  const std::string report = report_of(evaluated(table1(), settings), {"djb.csv"});
   expect_well_formed(report);
   EXPECT_TRUE(says(report, "measured points: djb.csv"));
   EXPECT_TRUE(says(report, "42 points from 30 Hz to 6000 Hz"));
@@ -128,8 +131,8 @@ TEST(Report, EnoughTrialsGiveNoWarning) {
 
 TEST(Report, TwiceTheSame) {
   const Evaluation& evaluation = evaluated(table1(), quick_settings());
-  const std::string first = report_of(evaluation, "djb.csv");
-  EXPECT_EQ(report_of(evaluation, "djb.csv"), first);
+  const std::string first = report_of(evaluation, {"djb.csv"});
+  EXPECT_EQ(report_of(evaluation, {"djb.csv"}), first);
 }
 
 /// Enough trials for rule (3), so that all warnings are about the fit.
@@ -231,6 +234,88 @@ TEST(Report, OtherSettings) {
   settings.adaptive = false;
   const std::string without = report_of(evaluated({kTable2.estimate, {}}, settings));
   EXPECT_TRUE(says(without, "Not run: all uncertainties are zero"));
+}
+
+TEST(Report, Labels) {
+  const Evaluation& evaluation = evaluated(kTable2, quick_settings());
+  EXPECT_FALSE(says(report_of(evaluation), "LABELS"));
+  ReportContext context;
+  context.labels.device = "DJB\nA/1800/V";
+  context.labels.date = "2024-05-01";
+  const std::string note(10000, 'x');
+  context.labels.note = note.c_str();
+  const std::string report = report_of(evaluation, context);
+  EXPECT_TRUE(says(report, "\nLABELS (as given)\n  Device                    DJB A/1800/V\n"));
+  EXPECT_EQ(line_with(report, "Date"), "Date                      2024-05-01");
+  EXPECT_FALSE(says(report, "Operator"));
+  EXPECT_FALSE(says(report, "Serial"));
+  EXPECT_EQ(line_with(report, "Note"),
+            "Note                      " + std::string(emax::app::kLabelShown, 'x') + " ...");
+}
+
+TEST(Report, UnitsOfGravity) {
+  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  EXPECT_FALSE(says(report_of(evaluation), " g)"));
+  ReportContext context;
+  context.in_g = true;
+  const std::string report = report_of(evaluation, context);
+  // Table 1's S is 1.00791 (weighted least squares, by NumPy); times 9.80665 m/s^2 per g, and over.
+  EXPECT_TRUE(says(line_with(report, "Limit a"), " m/s^2 (0.10277"));
+  EXPECT_TRUE(says(line_with(report, "Limit a"), " g), the number of S"));
+  EXPECT_TRUE(says(line_with(report, "Filter gain"), " V/(m/s^2) (9.884"));
+  EXPECT_TRUE(says(report, "V/(m/s^2)\n  S                   9.884"));
+  EXPECT_TRUE(says(line_with(report, "xi"), " (V/g)^2)"));
+}
+
+/// Writes down what begins where, and the words between.
+class Marks final : public emax::app::ReportMarkup {
+ public:
+  explicit Marks(emax::test::StringSink& sink) : sink_(sink) {}
+  void begin(ReportSection section, const char* heading) noexcept override {
+    put("\n[section " + std::to_string(static_cast<int>(section)) + " " +
+        (heading != nullptr ? heading : "") + "]");
+  }
+  void begin(ReportPart part, const char* name) noexcept override {
+    put("[" + std::to_string(static_cast<int>(part)) + (name != nullptr ? name : "") + "]");
+    tables_ += part == ReportPart::kTable ? 1 : 0;
+    cells_ += part == ReportPart::kCell ? 1 : 0;
+    warnings_ += part == ReportPart::kWarning ? 1 : 0;
+  }
+  void quote(const char* text) noexcept override { put(std::string("{") + text + "}"); }
+  int tables() const { return tables_; }
+  int cells() const { return cells_; }
+  int warnings() const { return warnings_; }
+
+ private:
+  void put(const std::string& text) {
+    sink_.write(emax::Span<const char>(text.data(), text.size()));
+  }
+
+  emax::test::StringSink& sink_;
+  int tables_ = 0;
+  int cells_ = 0;
+  int warnings_ = 0;
+};
+
+TEST(Report, MarksOfSomebodyElse) {
+  Settings settings = quick_settings();
+  settings.trend_count = 2;
+  const Evaluation& evaluation = evaluated(table1(), settings);
+  ReportContext context;
+  context.source_name = "<a>.csv";
+  context.labels.device = "a\nb";
+  emax::test::StringSink sink;
+  TextWriter out(sink);
+  Marks marks(sink);
+  emax::app::write_report(evaluation, context, out, &marks);
+  const std::string& report = sink.text();
+  EXPECT_TRUE(says(report, "[0Device]{a\nb}"));  // As it was given.
+  EXPECT_TRUE(says(report, "measured points: {<a>.csv}"));
+  EXPECT_TRUE(says(report, "[section 5 FIT]"));
+  // Parameters, large residuals, trend: 6, 3 and 3 columns; 3, 10 and 2 lines and their heads.
+  EXPECT_EQ(marks.tables(), 3);
+  EXPECT_EQ(marks.cells(), 6 * 4 + 3 * 11 + 3 * 3);
+  EXPECT_EQ(marks.warnings(), 2);  // The fit, and few trials.
 }
 
 TEST(Report, EnergyDifferenceBelowZeroHasNoRms) {

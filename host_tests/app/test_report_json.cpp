@@ -27,7 +27,7 @@ using emax::test::text_of;
 
 JsonReader json_of(const Evaluation& evaluation, const char* name = nullptr) {
   return JsonReader(
-      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, name, out); }));
+      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, {name}, out); }));
 }
 
 TEST(JsonReader, SeesWhatIsWrong) {
@@ -158,6 +158,33 @@ TEST(ReportJson, NamesThatNeedEscaping) {
     EXPECT_TRUE(json.valid()) << name;
     EXPECT_EQ(json.at("model.name"), name);
   }
+}
+
+TEST(ReportJson, LabelsOnlyWhereThereAreAny) {
+  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  EXPECT_EQ(json_of(evaluation).at("labels.device"), "nothing at labels.device");
+  emax::app::ReportContext context;
+  context.labels.serial = "17";
+  context.labels.operated_by = "\"J. Doe\"\\\n";
+  const JsonReader json(
+      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, context, out); }));
+  ASSERT_TRUE(json.valid());
+  EXPECT_EQ(json.at("labels.device"), "null");
+  EXPECT_EQ(json.at("labels.serial"), "17");
+  EXPECT_EQ(json.at("labels.operator"), "\"J. Doe\"\\\n");
+  EXPECT_EQ(json.at("labels.date"), "null");
+  EXPECT_EQ(json.at("labels.note"), "null");
+}
+
+TEST(ReportJson, LabelsAreCharacters) {
+  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  emax::app::ReportContext context;
+  context.labels.note = "\xC3\xA9 \xE2\x82\xAC \xF0\x9D\x84\x9E \xFF";
+  const std::string json =
+      text_of([&](TextWriter& out) { emax::app::write_json(evaluation, context, out); });
+  ASSERT_TRUE(JsonReader(json).valid());
+  // The example of RFC 8259, section 7, for what takes a surrogate pair is U+1D11E.
+  EXPECT_NE(json.find(R"("note": "\u00e9 \u20ac \ud834\udd1e \ufffd")"), std::string::npos);
 }
 
 }  // namespace

@@ -37,6 +37,22 @@ double random_double(std::mt19937_64& random) {
   return value;
 }
 
+std::string one_line(const std::string& words, std::uint32_t most) {
+  return text_of([&](TextWriter& out) { out.one_line(words.c_str(), most); });
+}
+
+TEST(TextWriter, WordsOfOthersInOneLine) {
+  EXPECT_EQ(one_line("a \"b\" <c> & 'd'", 100), "a \"b\" <c> & 'd'");
+  EXPECT_EQ(one_line("a\nb\r\nc\td", 100), "a b  c d");
+  EXPECT_EQ(one_line("a\x01\x7F\xFF", 100), "a???");
+  EXPECT_EQ(one_line("M\xC3\xBCller \xE2\x80\xAE", 100), "M\xC3\xBCller ?");
+  EXPECT_EQ(one_line("", 3), "");
+  EXPECT_EQ(one_line("abc", 3), "abc");
+  EXPECT_EQ(one_line("abcd", 3), "abc ...");
+  // Characters count, not bytes, and none is cut in two.
+  EXPECT_EQ(one_line("\xC3\xBC\xC3\xBC\xC3\xBC\xC3\xBC", 3), "\xC3\xBC\xC3\xBC\xC3\xBC ...");
+}
+
 TEST(TextWriter, WordsAndLines) {
   EXPECT_EQ(text_of([](TextWriter& out) {
               const char part[] = {'c', 'd'};

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "emax/app/report.hpp"
+#include "emax/capacity.hpp"
 #include "emax/elementary.hpp"
 
 namespace emax::app {
@@ -39,15 +40,15 @@ constexpr char kOverdamped[] =
     "below 1, because fit and grid follow the resonance.";
 constexpr char kTooManyCellsBest[] =
     "The grid of 12 cells per period of the resonance (or of the cutoff, if that is higher) needs "
-    "more than 8192 cells for this time; shorten it.";
+    "more than " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells for this time; shorten it.";
 constexpr char kTooManyCellsPaper[] =
-    "The grid of the paper's step needs more than 8192 cells for this time; shorten it or take a "
+    "The grid of the paper's step needs more than " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells for this time; shorten it or take a "
     "longer step.";
 constexpr char kTooManyCellsTrials[] =
     "The trials of the paper's method have room for 6162 cells; shorten the time, take a longer "
     "step, or give no uncertainties.";
 constexpr char kTooManySwitches[] =
-    "The best signal changes sign more than 256 times, more than the table holds; shorten the "
+    "The best signal changes sign more than " EMAX_TEXT_OF(EMAX_MAX_SWITCHES) " times, more than the table holds; shorten the "
     "time.";
 constexpr char kNoDevice[] =
     "There is no accepted device to go on with; start with points or parameters.";
@@ -602,14 +603,16 @@ void Evaluation::step_energy(EvaluationWorkspace& workspace) noexcept {
 void Evaluation::begin_bound(EvaluationWorkspace& workspace) noexcept {
   auto* const part = new (&workspace.part_.bound) EvaluationWorkspace::BoundPart;
   if (part->bound.start(model_, settings_.duration_s, workspace.grid_) != Status::kOk) {
-    is_bound_done_ = true;
-    go_on(workspace);
-    return;
+    is_bound_done_ = true;  // The next step goes on: from here it would be a recursion.
   }
   stage_ = Stage::kBound;
 }
 
 void Evaluation::step_bound(EvaluationWorkspace& workspace) noexcept {
+  if (is_bound_done_) {
+    go_on(workspace);
+    return;
+  }
   EnergyBound& bound = workspace.part_.bound.bound;
   const Status status = bound.step(model_, workspace.grid_);
   if (status == Status::kOk && !bound.done()) {

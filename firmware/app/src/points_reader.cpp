@@ -1,6 +1,7 @@
 // One line of CSV text to one point, and words for everything that can be wrong with it.
 #include "emax/app/points_reader.hpp"
 
+#include "emax/capacity.hpp"
 #include "emax/decimal.hpp"
 #include "emax/elementary.hpp"
 #include "emax/status.hpp"
@@ -24,7 +25,7 @@ constexpr char kExpectedCommas[] =
     "expected numbers separated by commas, with a point as decimal sign: "
     "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg";
 constexpr char kExpectedNumber[] = "expected a number such as 1.03 or 4e3";
-constexpr char kExpectedPoints[] = "expected 3 to 64 points";
+constexpr char kExpectedPoints[] = "expected 3 to " EMAX_TEXT_OF(EMAX_MAX_POINTS) " points";
 constexpr char kExpectedText[] = "expected lines of text with five numbers separated by commas";
 
 constexpr const char* kFound[] = {
@@ -66,7 +67,8 @@ constexpr bool is_letter(char character) noexcept {
 }
 
 constexpr bool is_control(char character) noexcept {
-  return (character >= '\0' && character < ' ' && character != '\t') || character == '\x7f';
+  const auto byte = static_cast<unsigned char>(character);
+  return (byte < ' ' && byte != '\t') || byte == 0x7f;
 }
 
 Span<const char> trim(Span<const char> text) noexcept {

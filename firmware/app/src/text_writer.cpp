@@ -1,6 +1,7 @@
 // Words, numbers and columns by way of the decimal conversions.
 #include "emax/app/text_writer.hpp"
 
+#include "emax/app/utf8.hpp"
 #include "emax/decimal.hpp"
 #include "emax/elementary.hpp"
 
@@ -22,6 +23,10 @@ std::size_t length_of(const char* words) noexcept {
   return length;
 }
 
+constexpr bool is_blank(char character) noexcept {
+  return character == ' ' || (character >= '\t' && character <= '\r');
+}
+
 }  // namespace
 
 TextWriter& TextWriter::text(const char* words) noexcept {
@@ -34,6 +39,21 @@ TextWriter& TextWriter::text(const char* words) noexcept {
 TextWriter& TextWriter::text(Span<const char> words) noexcept {
   put(words.data(), words.size());
   return *this;
+}
+
+TextWriter& TextWriter::one_line(const char* words, std::uint32_t most) noexcept {
+  for (std::uint32_t shown = 0; *words != '\0' && shown < most; ++shown) {
+    const Character next = first_character(words);
+    if (is_blank(*words)) {
+      text(" ");
+    } else if (next.code == kReplacement || !is_printable(next.code)) {
+      text("?");
+    } else {
+      text(Span<const char>(words, next.length));
+    }
+    words += next.length;
+  }
+  return text(*words == '\0' ? "" : " ...");
 }
 
 TextWriter& TextWriter::fixed(double value, int decimals) noexcept {

@@ -7,6 +7,7 @@
 
 #include "emax/absolute_error.hpp"
 #include "emax/app/settings.hpp"
+#include "emax/capacity.hpp"
 #include "emax/energy_bound.hpp"
 #include "emax/energy_guard.hpp"
 #include "emax/energy_search.hpp"
@@ -385,6 +386,7 @@ class Evaluation {
 };
 
 static_assert(std::is_trivially_copyable_v<Evaluation>);
-static_assert(sizeof(Evaluation) + sizeof(EvaluationWorkspace) <= 92 * 1024);
+static_assert(!kHasDefaultCapacities ||
+              sizeof(Evaluation) + sizeof(EvaluationWorkspace) <= 92 * 1024);
 
 }  // namespace emax::app

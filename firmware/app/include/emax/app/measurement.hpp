@@ -5,6 +5,7 @@
 
 #include "emax/accelerometer.hpp"
 #include "emax/app/evaluation.hpp"
+#include "emax/app/report_context.hpp"
 #include "emax/app/sweep.hpp"
 #include "emax/app/text_writer.hpp"
 #include "emax/hal/analog_stream.hpp"
@@ -32,12 +33,13 @@ const char* name_of_fault(Status status) noexcept;
 /// Writes the report of a measurement that led to no result: the fault, where, what to check, and
 /// everything that was measured before it. Like `write_report()` in all else.
 ///
+/// @param[in] context With a measurement.
 /// @param[in] refused The evaluation that has refused the points; null if the sweep failed.
-void write_measurement(const Measurement& measurement, const Evaluation* refused,
-                       TextWriter& out) noexcept;
+void write_measurement(const ReportContext& context, const Evaluation* refused, TextWriter& out,
+                       ReportMarkup* markup = nullptr) noexcept;
 
 /// The same as results.json, with null for all that there is not.
-void write_measurement_json(const Measurement& measurement, const Evaluation* refused,
+void write_measurement_json(const ReportContext& context, const Evaluation* refused,
                             TextWriter& out) noexcept;
 
 /// The points so far as f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg, with expanded total

@@ -5,41 +5,40 @@
 
 #include "emax/app/evaluation.hpp"
 #include "emax/app/measurement.hpp"
+#include "emax/app/report_context.hpp"
 #include "emax/app/text_writer.hpp"
 
 namespace emax::app {
 
-/// Writes the report, in the manner of a calibration result: what was put in, the fit and its
-/// quality, the error system, the maximum energy with its signal, Monte Carlo, trend; all with
-/// units. Plain ASCII, lines of at most 100 characters (a source name may make one longer).
+/// Writes the report, in the manner of a calibration result: what was put in, the measurement with
+/// its uncertainty budget if it was measured on a bench, the fit and its quality, the error system,
+/// the maximum energy with its signal, Monte Carlo, trend; all with units. Plain ASCII, lines of at
+/// most 100 characters, but 130 with accelerations in g; the name of a file or a label may bring
+/// other characters and make its line longer.
 ///
 /// Nothing is kept between calls, so the same evaluation gives the same text again: once to count
 /// the characters, once to send them.
 ///
-/// @param[in] evaluation  With the stage kDone.
-/// @param[in] source_name Of the file with the points; null if there is none.
-void write_report(const Evaluation& evaluation, const char* source_name, TextWriter& out) noexcept;
+/// @param[in] evaluation With the stage kDone.
+/// @param[in] context    Its measurement has come to a good end, and its points were handed to
+///                       `start_from_points()`.
+/// @param[in] markup     Null for the text as it is to be read. Otherwise it sets its marks, and
+///                       `out` gets the words and numbers between them.
+void write_report(const Evaluation& evaluation, const ReportContext& context, TextWriter& out,
+                  ReportMarkup* markup = nullptr) noexcept;
 
-/// The same for points that were measured on a bench and handed to `start_from_points()`: with a
-/// section on the measurement and its uncertainty budget.
+/// Writes results.json. Always valid JSON in ASCII: a number that is not finite, or that does not
+/// exist for this evaluation, is null.
 ///
-/// @param[in] measurement A sweep that has come to a good end.
-void write_report(const Evaluation& evaluation, const Measurement& measurement,
-                  TextWriter& out) noexcept;
-
-/// Writes results.json. Always valid JSON: a number that is not finite, or that does not exist for
-/// this evaluation, is null.
+/// With a measurement there is an object `bench`. Its `common`, `budget` and `truth` are relative
+/// standard uncertainties and the truth of a simulated bench; a row of `budget` is frequency,
+/// noise, quantisation, hum, distortion, phase (rad); percentages are expanded (k = 2). With a
+/// label there is an object `labels` of all five, null for those not given. Names are those of
+/// bytes, labels those of UTF-8, U+FFFD for what is not valid.
 ///
-/// @param[in] evaluation  With the stage kDone.
-/// @param[in] source_name As for the report; quotes, backslashes and control characters are
-/// escaped.
-void write_json(const Evaluation& evaluation, const char* source_name, TextWriter& out) noexcept;
-
-/// The same for points measured on a bench, with an object `bench`. Its `common`, `budget` and
-/// `truth` are relative standard uncertainties and the truth of a simulated bench; a row of
-/// `budget` is frequency, noise, quantisation, hum, distortion, phase (rad); percentages are
-/// expanded (k = 2).
-void write_json(const Evaluation& evaluation, const Measurement& measurement,
+/// @param[in] evaluation With the stage kDone.
+/// @param[in] context    As for the report.
+void write_json(const Evaluation& evaluation, const ReportContext& context,
                 TextWriter& out) noexcept;
 
 /// Writes one sentence, without line feed, on why an evaluation was refused or has ended early,

@@ -32,6 +32,9 @@ class TextWriter {
   /// @param[in] words Ends with a zero; null writes nothing.
   TextWriter& text(const char* words) noexcept;
   TextWriter& text(Span<const char> words) noexcept;
+  /// Words of others, UTF-8 or not, in one line: white space as blanks, '?' for what is not
+  /// printable, " ..." for what goes beyond `most` characters.
+  TextWriter& one_line(const char* words, std::uint32_t most) noexcept;
   /// As printf's %.*f, 0 to 17 decimals.
   TextWriter& fixed(double value, int decimals) noexcept;
   /// As %.*e, 0 to 16 decimals.

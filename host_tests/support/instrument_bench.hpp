@@ -1,0 +1,141 @@
+// An instrument on the simulated bench, with everything else in memory.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "emax/app/in_place.hpp"
+#include "emax/app/instrument.hpp"
+#include "emax/app/saved_state.hpp"
+#include "emax/sim/sim_bench.hpp"
+
+#include "support/manual_clock.hpp"
+#include "support/manual_watchdog.hpp"
+#include "support/memory_byte_stream.hpp"
+#include "support/memory_store.hpp"
+
+namespace emax::test {
+
+/// Five frequencies and short records: a sweep in tens of milliseconds.
+inline app::SweepSettings quick_sweep() {
+  app::SweepSettings settings;
+  settings.frequency_count = 5;
+  const double frequencies_hz[] = {200.0, 1000.0, 2500.0, 4000.0, 5500.0};
+  std::copy_n(frequencies_hz, 5, settings.frequency_hz.begin());
+  settings.repeats = 3;
+  return settings;
+}
+
+/// A new instrument, switched on, with a peer connected. One at a time.
+class InstrumentBench {
+ public:
+  /// A poll takes this long on the instrument's clock.
+  static constexpr std::uint64_t kPoll_us = 100;
+  /// Far more polls than any job of a test takes.
+  static constexpr int kMostPolls = 3'000'000;
+
+  explicit InstrumentBench(const sim::BenchSettings& settings = {}, std::size_t room = 1U << 22U)
+      : console(room), store({2 * app::kSavedRecords, 2048, 8}) {
+    (void)bench.configure(settings);
+    simulated = {settings.seed,
+                 {settings.device.sensitivity, settings.device.natural_frequency_hz,
+                  settings.device.damping}};
+    switch_on();
+  }
+
+  /// Power off and on; the store keeps what it holds.
+  void switch_on() {
+    static app::InPlace<app::Instrument> memory;
+    const app::Ports ports = {bench, console, clock, &watchdog, &store};
+    const app::Board board = {"test", "4711", &sweep, &simulated, nullptr};
+    instrument = &memory.make(ports, board);
+    instrument->start();
+  }
+
+  void poll(int count = 1) {
+    for (int i = 0; i < count; ++i) {
+      clock.wait_us(kPoll_us);
+      watchdog.wait_us(kPoll_us);
+      instrument->poll();
+    }
+  }
+
+  /// Until everything that was sent is executed and answered.
+  bool settle() {
+    for (int i = 0; i < kMostPolls; ++i) {
+      poll();
+      if (instrument->is_settled() && !instrument->is_busy()) {
+        return true;
+      }
+      if (instrument->is_settled() && instrument->is_working()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Until nothing runs.
+  bool finish() {
+    for (int i = 0; i < kMostPolls; ++i) {
+      if (!instrument->is_working() && instrument->is_settled()) {
+        return true;
+      }
+      poll();
+    }
+    return false;
+  }
+
+  void send(const std::string& text) { console.send(text + "\n"); }
+
+  /// Sends one message and takes its answer, without the line feed.
+  std::string ask(const std::string& text) {
+    send(text);
+    if (!settle()) {
+      return "no end";
+    }
+    std::string answer = console.receive();
+    if (!answer.empty() && answer.back() == '\n') {
+      answer.pop_back();
+    }
+    return answer;
+  }
+
+  /// The same as numbers.
+  std::vector<double> numbers(const std::string& text) {
+    std::vector<double> values;
+    std::stringstream fields(ask(text));
+    std::string field;
+    while (std::getline(fields, field, ',')) {
+      values.push_back(std::strtod(field.c_str(), nullptr));
+    }
+    return values;
+  }
+
+  /// All errors that wait, each with a line feed.
+  std::string errors() {
+    std::string all;
+    for (;;) {
+      const std::string error = ask("SYST:ERR?");
+      if (error == "0,\"No error\"" || error.empty() || error == "no end") {
+        return all;
+      }
+      all += error + "\n";
+    }
+  }
+
+  bool drive_is_at_zero() const { return bench.dac().last == 0 && !bench.running(); }
+
+  sim::SimBench bench;
+  MemoryByteStream console;
+  ManualClock clock;
+  ManualWatchdog watchdog{100'000};
+  MemoryStore store;
+  app::SweepSettings sweep = quick_sweep();
+  app::SimulatedBench simulated;
+  app::Instrument* instrument = nullptr;
+};
+
+}  // namespace emax::test
