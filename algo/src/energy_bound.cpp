@@ -52,7 +52,7 @@ constexpr std::size_t kMoreStepsForOrder1 = 4;
 /// Least d, as part of its mean: d falls to 0 towards T, but its least value divides the remainder.
 constexpr double kFloor = 0.02;
 constexpr std::size_t kMaxChecks = 20;
-constexpr std::size_t kStepsAtOnce = 64;
+constexpr std::size_t kStepsAtOnce = 16;
 /// The first lift on trial. It triples until one passes, or below 0 until one fails.
 constexpr double kFirstLift = 0.002;
 constexpr double kLiftResolution = 2e-5;
@@ -298,6 +298,7 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   for (double& number : workspace.numbers().first(kRank * cells_)) {
     number = random.next() - 0.5;
   }
+  vector_ = 0;
   sweeps_ = 0;
   checks_ = 0;
   phase_ = Phase::kProposal;
@@ -311,15 +312,20 @@ double EnergyBound::progress() const noexcept {
   return static_cast<double>(sweeps_ + checks_) / static_cast<double>(kSweeps + kMaxChecks);
 }
 
+/// One product; with the last vector's, all vectors take the direction of their products.
 void EnergyBound::sweep(const ModalModel& model, GridWorkspace& workspace) noexcept {
   PhiOperator phi;
   (void)phi.set(model, proposal_s_, cells_);
   const double shift = ascent_shift(model, proposal_s_ / static_cast<double>(cells_));
   const Span<double> vectors = workspace.numbers().first(kRank * cells_);
   const Span<double> products = workspace.numbers().from(kRank * cells_);
-  for (std::size_t r = 0; r < kRank; ++r) {
-    phi.multiply(vectors.from(r * cells_).first(cells_), products.from(r * cells_).first(cells_));
+  phi.multiply(vectors.from(vector_ * cells_).first(cells_),
+               products.from(vector_ * cells_).first(cells_));
+  if (++vector_ < kRank) {
+    return;
   }
+  vector_ = 0;
+  ++sweeps_;
   for (std::size_t i = 0; i < cells_; ++i) {
     double norm2 = 0.0;
     for (std::size_t r = 0; r < kRank; ++r) {
@@ -407,7 +413,7 @@ void EnergyBound::next_check(bool passed) noexcept {
 Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
   if (phase_ == Phase::kProposal) {
     sweep(model, workspace);
-    if (++sweeps_ == kSweeps) {
+    if (sweeps_ == kSweeps) {
       take_proposal(workspace);
       phase_ = Phase::kCheck;
       lift_ = kFirstLift;

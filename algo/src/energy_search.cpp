@@ -25,7 +25,7 @@ constexpr double kSame = 1e-11;
 constexpr std::size_t kWorkOfRefinement = 32;
 /// What the energy of a pulse costs, and how much of that is done at once.
 constexpr std::size_t kWorkOfPulse = 12;
-constexpr std::size_t kWorkOfPulses = 2048;
+constexpr std::size_t kWorkOfPulses = 512;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
 /// What each pattern may take of them, whatever the capacity, so that it changes no pattern.
 constexpr std::uint64_t kNumbersPerPattern = 8192;
@@ -41,17 +41,27 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
   return static_cast<std::size_t>(whole) + (cells - whole > 1e-9 * cells ? 1u : 0u);
 }
 
-/// Hands over the stretches of up to kMaxPulse cells of equal sign that begin at a cell, each with
-/// that sign times the sum of the product over it.
-template <typename Visit>
-void visit_pulses(std::size_t cell, Signs signs, Span<const double> product,
-                  const Visit& visit) noexcept {
+/// The end of the run of equal signs that a cell is in: the first cell after it.
+std::size_t end_of_run(std::size_t cell, Signs signs) noexcept {
   const bool sign = signs.is_positive(cell);
-  const std::size_t left = signs.size() - cell;
+  std::size_t end = cell + 1;
+  while (end < signs.size() && signs.is_positive(end) == sign) {
+    ++end;
+  }
+  return end;
+}
+
+/// Hands over the stretches of up to kMaxPulse cells that begin at a cell and end within its run,
+/// each with its sign times the sum of the product over it.
+template <typename Visit>
+void visit_pulses(std::size_t cell, std::size_t run_end, double sign, Span<const double> product,
+                  const Visit& visit) noexcept {
+  const std::size_t left = run_end - cell;
   const std::size_t longest = left < PhiOperator::kMaxPulse ? left : PhiOperator::kMaxPulse;
+  const double* value = product.from(cell).data();
   double held = 0.0;
-  for (std::size_t k = 0; k < longest && signs.is_positive(cell + k) == sign; ++k) {
-    held += sign ? product[cell + k] : -product[cell + k];
+  for (std::size_t k = 0; k < longest; ++k) {
+    held += sign * value[k];
     visit(k + 1, held);
   }
 }
@@ -102,8 +112,10 @@ std::size_t PulseTurn::look_at_limits(const PhiOperator& phi, Signs signs,
                                       Span<const double> product) noexcept {
   const double smallest_gain = 0.25 * kSmallestGain * abs(dot(signs, product));
   best_.gain = smallest_gain;
+  std::size_t run_end = 0;
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    visit_pulses(i, signs, product, [&](std::size_t width, double held) {
+    run_end = i < run_end ? run_end : end_of_run(i, signs);
+    visit_pulses(i, run_end, signs[i], product, [&](std::size_t width, double held) {
       const double gain = phi.pulse_limit(width) - held;
       if (gain > best_.gain) {
         best_ = {i, width, gain};
@@ -126,9 +138,11 @@ std::size_t PulseTurn::look_at_limits(const PhiOperator& phi, Signs signs,
 std::size_t PulseTurn::look_at_energies(const PhiOperator& phi, Signs signs,
                                         Span<const double> product) noexcept {
   std::size_t work = 0;
+  std::size_t run_end = 0;
   for (; next_ < signs.size() && work < kWorkOfPulses; ++next_) {
     ++work;
-    visit_pulses(next_, signs, product, [&](std::size_t width, double held) {
+    run_end = next_ < run_end ? run_end : end_of_run(next_, signs);
+    visit_pulses(next_, run_end, signs[next_], product, [&](std::size_t width, double held) {
       if (!(phi.pulse_limit(width) - held > best_.gain)) {
         return;
       }

@@ -125,7 +125,7 @@ class EnergyBound {
   Status start(const ModalModel& model, double duration_s, GridWorkspace& workspace) noexcept;
 
   /// @returns
-  /// * kOk: A part of the work is done: one product of Phi with 8 vectors, or 64 steps of a check.
+  /// * kOk: A part of the work is done: one product with Phi, or 16 steps of a check.
   /// * kNotProven: With the last step: no multiple of d passed, and there is no bound.
   Status step(const ModalModel& model, GridWorkspace& workspace) noexcept;
 
@@ -164,6 +164,7 @@ class EnergyBound {
   std::size_t cells_ = 0;
   std::size_t steps_ = 0;
   std::size_t sweeps_ = 0;
+  std::size_t vector_ = 0;  // Whose product comes next.
   std::size_t checks_ = 0;
   std::size_t steps_left_ = 0;
   Phase phase_ = Phase::kDone;

@@ -190,7 +190,7 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// one wins, so the result is the same on every target. 2.6 KiB beside the workspace.
 ///
 /// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
-/// few switches are best, and up to 250 where it is a hundred switches; a product costs 40 to 50
+/// few switches are best, and up to 250 where it is a hundred switches; a product costs 25 to 40
 /// instructions per cell and mode, and looking for a pulse another 60 per cell.
 class EnergySearch {
  public:
@@ -233,7 +233,7 @@ class EnergySearch {
   std::size_t trace_count() const noexcept { return trace_count_; }
 
   /// In cells of products: at the end of a step one product more may have been made.
-  static constexpr std::size_t kWorkPerStep = 4096;
+  static constexpr std::size_t kWorkPerStep = 1024;
 
  private:
   enum class Phase : std::uint8_t { kStart, kClimb, kTurn, kRefine };

@@ -10,11 +10,11 @@
 namespace emax::app {
 namespace {
 
-constexpr std::uint32_t kDrawsPerStep = 25;
+constexpr std::uint32_t kDrawsPerStep = 6;
 constexpr std::uint64_t kFitDrawsOffset = std::uint64_t{1} << 60U;
 
 // Work is counted in cells of Phi's products: a value from the store costs next to nothing.
-constexpr std::size_t kWorkPerStep = 4096;
+constexpr std::size_t kWorkPerStep = 1024;
 constexpr std::size_t kWorkOfStoredValue = 2;
 
 // Beyond these a^2 E would leave the range in which its squares are finite.

@@ -149,8 +149,8 @@ static_assert(std::is_trivially_copyable_v<EvaluationWorkspace>);
 /// A goal short of kReport does a part of the job; `pursue()` goes on from there. The digits are
 /// the same in whatever order the parts are asked for.
 ///
-/// A step does about as much as 4096 cells of products with Phi: a millisecond on a PC, a few
-/// million instructions on any processor, and one product at least.
+/// A step does about as much as 1024 cells of products with Phi: some hundred thousand
+/// instructions where double is in hardware, some million where it is not; one product at least.
 ///
 /// The object keeps results; the memory to find them is the workspace. Both together take less than
 /// 92 KiB and are all zero before use.
