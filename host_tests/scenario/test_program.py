@@ -33,7 +33,10 @@ FAULTS = {
     "inverted-polarity": ("inverted polarity", "swap the sensor's leads"),
     "dc-drift": ("DC drift", "warm up"),
 }
-FILES = ["histogram.csv", "impulse_response.csv", "report.txt", "results.json", "signal.csv", "trend.csv"]
+# Of a device whose parameters are known, without a trend.
+FILES = ["histogram.csv", "histogram.svg", "impulse_response.csv", "impulse_response.svg", "pictures.gp"]
+FILES += ["report.html", "report.txt", "results.json", "signal.csv", "signal.svg", "trend.csv"]
+FILES_OF_POINTS = ["frequency_response.csv", "frequency_response.svg", *FILES]
 
 
 def table(response, frequencies=FREQUENCIES) -> list[str]:
@@ -364,8 +367,7 @@ class BadOptions(ProgramTest):
         self.refuse([], "emax: ", "expected emax report")
         self.refuse(["reprot"], "emax: reprot: ", "did you mean emax report?")
         self.refuse(["--json"], "emax: --json: ", "emax report")
-        for command in ["compare", "scpi"]:
-            self.refuse([command, "a"], f"emax: {command}: not yet", "use emax report")
+        self.refuse(["scpi", "a"], "emax: a: unexpected argument", "expected options, such as --tcp 5025")
         self.refuse(["certify"], "emax: certify: no device; ", "expected --model S,f0,beta or --points FILE")
 
     def test_unknown_options(self):
@@ -516,7 +518,7 @@ class Bench(ProgramTest):
 
     def test_files_and_the_way_back(self):
         report = self.succeed("report", *QUICK, "--out", "out")
-        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in ["frequency_response.csv", *FILES])])
+        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in FILES_OF_POINTS)])
         self.assertEqual((self.directory / "out/report.txt").read_text(), report)
         results = json.loads((self.directory / "out/results.json").read_text())
         common = ["--reference-uncertainty", repr(results["bench"]["common_percent"])]
@@ -538,7 +540,7 @@ class Bench(ProgramTest):
                 report = result.stdout.decode("ascii")
                 self.assertRegex(report, rf"FAULT\n  {name} +at {found[1]} Hz\n")
                 self.assertEqual((self.directory / "out/report.txt").read_text(), report)
-                files = ["frequency_response.csv", "report.txt", "results.json"]
+                files = ["frequency_response.csv", "report.html", "report.txt", "results.json"]
                 self.assertEqual(self.files(), ["out", *(f"out/{file}" for file in files)])
                 bench = json.loads((self.directory / "out/results.json").read_text())["bench"]
                 self.assertEqual((bench["fault"]["name"], bench["points"]), (name, kept))
@@ -558,7 +560,7 @@ class Bench(ProgramTest):
         self.succeed("report", *QUICK, "--out", "out")
         (self.directory / "out/notes.txt").write_text("mine")
         self.assertEqual(self.run_program("report", "--bench-fault", "late-block", "--out", "out").returncode, 3)
-        files = ["frequency_response.csv", "notes.txt", "report.txt", "results.json"]
+        files = ["frequency_response.csv", "notes.txt", "report.html", "report.txt", "results.json"]
         self.assertEqual(sorted(os.listdir(self.directory / "out")), files)
 
     def test_levels_that_cannot_be_reached(self):
@@ -643,7 +645,7 @@ class Files(ProgramTest):
 
     def test_model(self):
         report = self.succeed("report", *MODEL, "--trials", "1000", "--trend", "0.001,0.002", "--out", "out")
-        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in FILES)])
+        self.assertEqual(self.files(), ["out", *(f"out/{name}" for name in [*FILES, "trend.svg"])])
         self.assertEqual((self.directory / "out/report.txt").read_text(), report)
         results = self.json_of(*MODEL, "--trials", "1000", "--trend", "0.001,0.002")
         self.assertEqual(json.loads((self.directory / "out/results.json").read_text()), results)
@@ -664,8 +666,7 @@ class Files(ProgramTest):
     def test_points(self):
         name = self.write(table(second_order()))
         self.succeed("report", "--points", name, *QUICK, "--json", "--out", "out")
-        files = ["frequency_response.csv", *FILES]
-        self.assertEqual(self.files(), ["out", *(f"out/{file}" for file in files), name])
+        self.assertEqual(self.files(), ["out", *(f"out/{file}" for file in FILES_OF_POINTS), name])
         header, rows = self.columns("frequency_response.csv")
         self.assertEqual(
             header,
@@ -824,7 +825,9 @@ class Endings(ProgramTest):
         names = "points model reference-uncertainty order cutoff gain time limit criterion method step iterations"
         names += " bench-seed bench-truth bench-noise bench-fault"
         names += " level acceleration-limit drive-limit slew settle cycles"
-        names += " trials adaptive probability distribution birge seed generator trend json out help version"
+        names += " trials adaptive probability distribution birge seed generator trend"
+        names += " device serial operator date note units json out"
+        names += " help version"
         for name in names.split():
             self.assertIn(f"  --{name} ", long)
 

@@ -15,6 +15,7 @@
 #include "options.hpp"
 #include "problem.hpp"
 #include "report_command.hpp"
+#include "scpi_command.hpp"
 #include "stop_request.hpp"
 
 namespace {
@@ -38,7 +39,7 @@ Commands
              uncertainty by Monte Carlo and its trend over T, prints a report
   certify    proves how far the maximum can be from the truth, for any signal
   compare    ranks devices by their results
-  scpi       the instrument's console (not yet)
+  scpi       the instrument's console: SCPI commands in, answers out
 )";
 
 constexpr const char* kReportHelp =
@@ -74,15 +75,6 @@ Examples
   emax report --model 1.037,4073,0.3182 --order 4 --json
   emax certify --model 1.037,4073,0.3182 --effort 30 --out certificate.json
 )";
-
-struct LaterCommand {
-  std::string_view name;
-  const char* advice;
-};
-
-constexpr LaterCommand kLaterCommands[] = {
-    {"scpi", "scpi: not yet; use emax report"},
-};
 
 Problem print(const std::string& text) {
   emax::host::FileSink sink(stdout);
@@ -131,19 +123,20 @@ Problem run(Arguments arguments) {
   if (wants_help && command == "compare") {
     return print(emax::host::help_on_compare() + kCommonHelp);
   }
+  if (wants_help && command == "scpi") {
+    return print(emax::host::help_on_scpi() + kCommonHelp);
+  }
   if (wants_help || contains(arguments, "--version")) {
     return print_about(is_report, !wants_help);
-  }
-  for (const LaterCommand& later : kLaterCommands) {
-    if (command == later.name) {
-      return emax::host::bad_input(later.advice);
-    }
   }
   if (is_certify) {
     return emax::host::run_certify(arguments.from(1));
   }
   if (command == "compare") {
     return emax::host::run_compare(arguments.from(1));
+  }
+  if (command == "scpi") {
+    return emax::host::run_scpi(arguments.from(1));
   }
   return is_report ? emax::host::run_report(arguments.from(1)) : unknown_command(command);
 }

@@ -361,15 +361,44 @@ constexpr Option kOptions[] = {
      "2 to 16 lengths in s, with the straight line through\n"
      "their energies",
      take_trend},
-    {"json", "Output", nullptr, nullptr, nullptr, "results.json on standard output instead of text",
+    {"device", "Labels, in UTF-8; no result depends on them", "TEXT", nullptr,
+     "the name of the device", "name of the device, for titles too",
+     [](std::string_view value, ReportOptions& options) {
+       return take_text(value, options.device_name);
+     }},
+    {"serial", nullptr, "TEXT", nullptr, "a serial number", "its serial number",
+     [](std::string_view value, ReportOptions& options) {
+       return take_text(value, options.serial);
+     }},
+    {"operator", nullptr, "TEXT", nullptr, "a name", "who measures",
+     [](std::string_view value, ReportOptions& options) {
+       return take_text(value, options.operated_by);
+     }},
+    {"date", nullptr, "TEXT", nullptr, "a date", "when, in any form",
+     [](std::string_view value, ReportOptions& options) { return take_text(value, options.date); }},
+    {"note", nullptr, "TEXT", nullptr, "a note",
+     "anything else; the text report shows the first 240\n"
+     "characters of each label, the page and results.json\n"
+     "all of it",
+     [](std::string_view value, ReportOptions& options) { return take_text(value, options.note); }},
+    {"units", "Output", "si|g", "si", "si or g",
+     "g: accelerations also in g, sensitivities in V/g, in\n"
+     "report and page (standard gravity, 9.80665 m/s^2)",
+     [](std::string_view value, ReportOptions& options) {
+       return take_choice(value, "si", false, "g", true, options.in_g);
+     }},
+    {"json", nullptr, nullptr, nullptr, nullptr, "results.json on standard output instead of text",
      [](std::string_view, ReportOptions& options) { return options.json = true; }},
     {"out", nullptr, "DIR", nullptr, "the name of a directory",
-     "files as well: report.txt, results.json,\n"
-     "frequency_response.csv (unless --model; --points can\n"
-     "read it, with the report's expanded common part as\n"
+     "files as well: report.txt, report.html (one page,\n"
+     "also to print), results.json, frequency_response.csv\n"
+     "(unless --model; --points can read it, with the\n"
+     "report's expanded common part as\n"
      "--reference-uncertainty), impulse_response.csv,\n"
-     "signal.csv, trend.csv, histogram.csv; DIR is made if\n"
-     "missing, and files of an earlier run are replaced",
+     "signal.csv, trend.csv, histogram.csv; a picture (SVG)\n"
+     "of each by gnuplot and its script, pictures.gp; DIR\n"
+     "is made if missing, and files of an earlier run are\n"
+     "replaced",
      [](std::string_view value, ReportOptions& options) {
        return take_text(value, options.out_directory);
      }},

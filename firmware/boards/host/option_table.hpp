@@ -24,6 +24,11 @@ struct Option {
 /// @returns All options that take part in a report, in the order of the help.
 Span<const Option> option_table() noexcept;
 
+/// @returns Whether `emax scpi` has it, too: what describes the bench and its sweep.
+inline bool is_for_console(const Option& option) noexcept {
+  return option.is_for_bench || option.name == "reference-uncertainty";
+}
+
 /// @returns The option of that name (without dashes), null if there is none.
 const Option* find_option(std::string_view name) noexcept;
 

@@ -200,7 +200,16 @@ void add_help(std::string& text, const Option& option) {
   text += "\n";
 }
 
+const char* or_null(const std::string& text) noexcept {
+  return text.empty() ? nullptr : text.c_str();
+}
+
 }  // namespace
+
+app::Labels ReportOptions::labels() const noexcept {
+  return {or_null(device_name), or_null(serial), or_null(operated_by), or_null(date),
+          or_null(note)};
+}
 
 Problem parse_report_options(Span<const std::string_view> arguments, ReportOptions& options) {
   std::vector<Given> all;
@@ -224,6 +233,16 @@ std::string help_on_report_options() {
   std::string text;
   for (const Option& option : option_table()) {
     add_help(text, option);
+  }
+  return text;
+}
+
+std::string help_on_bench_options() {
+  std::string text;
+  for (const Option& option : option_table()) {
+    if (is_for_console(option)) {
+      add_help(text, option);
+    }
   }
   return text;
 }

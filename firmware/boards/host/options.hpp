@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "emax/app/evaluation.hpp"
+#include "emax/app/report_context.hpp"
 #include "emax/app/settings.hpp"
 #include "emax/app/sweep_settings.hpp"
 #include "emax/sim/sim_bench.hpp"
@@ -27,10 +28,18 @@ struct ReportOptions {
   double reference_uncertainty_percent = 0.0;
   sim::BenchSettings bench;
   app::SweepSettings sweep;
+  std::string device_name;  ///< This and the next four are labels, empty if not given.
+  std::string serial;
+  std::string operated_by;
+  std::string date;
+  std::string note;
+  bool in_g = false;
   bool json = false;
   std::string out_directory;  ///< Empty for no files.
 
   bool measures() const noexcept { return points_path.empty() && model_text.empty(); }
+  /// Refers to this object.
+  app::Labels labels() const noexcept;
 };
 
 /// Reads the arguments behind `emax report` and checks all that can be checked without a file.
@@ -40,5 +49,8 @@ Problem parse_report_options(Span<const std::string_view> arguments, ReportOptio
 
 /// @returns The help of all options, in lines of at most 80 characters.
 std::string help_on_report_options();
+
+/// @returns The same for those of the simulated bench and its sweep alone.
+std::string help_on_bench_options();
 
 }  // namespace emax::host

@@ -1,0 +1,11 @@
+// The table of all SCPI commands for people who read.
+#pragma once
+
+#include "emax/app/text_writer.hpp"
+
+namespace emax::host {
+
+/// Writes the instrument's own table as Markdown, one row for each command.
+void write_command_list(app::TextWriter& out) noexcept;
+
+}  // namespace emax::host

@@ -1,0 +1,218 @@
+// `emax scpi`: the loop around the instrument.
+#include "scpi_command.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "emax/app/in_place.hpp"
+#include "emax/app/instrument.hpp"
+#include "emax/sim/sim_bench.hpp"
+
+#include "command_list.hpp"
+#include "console.hpp"
+#include "console_port.hpp"
+#include "file_store.hpp"
+#include "options.hpp"
+#include "scpi_options.hpp"
+#include "stdio_stream.hpp"
+#include "stop_request.hpp"
+#include "system_clock.hpp"
+#include "tcp_stream.hpp"
+
+namespace emax::host {
+
+namespace {
+
+using Microseconds = std::chrono::microseconds;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::size_t kStoredTrials = 1'000'000;
+// A stop request ends every sleep; this is for one that comes just before it.
+constexpr Microseconds kLongestSleep{100'000};
+
+app::MemoryUse memory_use() noexcept { return {sizeof(app::Instrument), 0, 0}; }
+
+// Holds the time of the bench, which moves block by block, to that of the clock on the wall.
+class Pacer final {
+ public:
+  // pace: seconds of the bench per second; 0 for as fast as it goes.
+  Pacer(double pace, const sim::SimBench& bench) noexcept : pace_(pace), bench_(bench) {}
+
+  // The time until the next block is due.
+  Microseconds until_due(bool is_sweeping) noexcept {
+    if (pace_ == 0.0 || !is_sweeping) {
+      runs_ = false;
+      return Microseconds{0};
+    }
+    if (!runs_) {
+      runs_ = true;
+      start_ = SteadyClock::now();
+      start_frames_ = bench_.clock_frames();
+    }
+    const auto frames = static_cast<double>(bench_.clock_frames() - start_frames_);
+    const std::chrono::duration<double> bench_time(frames / bench_.format().sample_rate_hz);
+    const auto left = bench_time / pace_ - (SteadyClock::now() - start_);
+    return std::chrono::duration_cast<Microseconds>(left);
+  }
+
+ private:
+  double pace_;
+  const sim::SimBench& bench_;
+  SteadyClock::time_point start_;
+  std::uint64_t start_frames_ = 0;
+  bool runs_ = false;
+};
+
+// The instrument on its simulated bench.
+class ScpiJob final {
+ public:
+  ScpiJob(const ScpiOptions& options, ConsolePort& port)
+      : port_(port),
+        pacer_(options.pace, bench_),
+        sweep_(options.report.sweep),
+        simulated_{options.report.bench.seed,
+                   {options.report.bench.device.sensitivity,
+                    options.report.bench.device.natural_frequency_hz,
+                    options.report.bench.device.damping}},
+        trials_(new (std::nothrow) double[kStoredTrials]),
+        store_(options.store_path.empty() ? static_cast<StoreBytes&>(volatile_bytes_)
+                                          : static_cast<StoreBytes&>(file_bytes_)) {}
+  ScpiJob(const ScpiJob&) = delete;
+  ScpiJob& operator=(const ScpiJob&) = delete;
+
+  Problem run(const ScpiOptions& options) {
+    if (bench_.configure(options.report.bench) != Status::kOk) {
+      return fault("the simulated bench refuses its settings");
+    }
+    if (!options.store_path.empty()) {
+      if (Problem problem = file_bytes_.open(options.store_path)) {
+        return problem;
+      }
+    }
+    static app::InPlace<app::Instrument> memory;
+    const app::Ports ports = {bench_, port_, clock_, nullptr, &store_};
+    const app::Board board = {"host", "0", &sweep_, &simulated_, memory_use};
+    app::Instrument& instrument = memory.make(ports, board);
+    if (trials_ != nullptr) {
+      instrument.lend_trial_store(Span<double>(trials_.get(), kStoredTrials));
+    }
+    instrument.start();
+    while (!stop_requested()) {
+      instrument.poll();
+      if (!goes_on(instrument)) {
+        instrument.abort();
+        return {};
+      }
+      rest(instrument);
+    }
+    return stop(instrument);
+  }
+
+ private:
+  // A session has come to its end once everything that came in is answered.
+  bool goes_on(const app::Instrument& instrument) {
+    if (port_.input_ended() && instrument.is_settled()) {
+      return port_.end_session();
+    }
+    if (port_.input_ended() && instrument.is_held() && port_.is_awaited()) {
+      return port_.end_session();
+    }
+    return port_.connected() || port_.serves_others();
+  }
+
+  void rest(const app::Instrument& instrument) {
+    const ConsolePort::Wishes wishes = {instrument.takes_input(), instrument.wants_to_write()};
+    const Microseconds until_due = pacer_.until_due(instrument.is_sweeping());
+    const bool is_paced = until_due > Microseconds{0};
+    const bool is_resting = is_paced || !instrument.is_busy();
+    const Microseconds longest = is_paced && until_due < kLongestSleep ? until_due : kLongestSleep;
+    port_.wait(is_resting ? longest : Microseconds{0}, wishes);
+  }
+
+  Problem stop(app::Instrument& instrument) {
+    const bool was_sweeping = instrument.is_sweeping();
+    instrument.abort();
+    const bool is_at_zero = bench_.dac().last == 0 && !bench_.running();
+    const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
+    return {ExitStatus::kStopped,
+            "stopped" + std::string(was_sweeping ? " during the sweep" : "") + ", " + drive};
+  }
+
+  sim::SimBench bench_;
+  SystemClock clock_;
+  ConsolePort& port_;
+  Pacer pacer_;
+  app::SweepSettings sweep_;
+  app::SimulatedBench simulated_;
+  std::unique_ptr<double[]> trials_;
+  VolatileBytes volatile_bytes_;
+  FileBytes file_bytes_;
+  FileStore store_;
+};
+
+Problem run_on_tcp(const ScpiOptions& options) {
+  TcpStream port;
+  if (Problem problem = port.listen(options.port)) {
+    return problem;
+  }
+  std::fprintf(stderr, "emax: listening on 127.0.0.1:%u\n", unsigned{port.port()});
+  return ScpiJob(options, port).run(options);
+}
+
+Problem run_on_stdio(const ScpiOptions& options) {
+  StdioStream port;
+  Problem problem = ScpiJob(options, port).run(options);
+  if (!problem && port.error() != 0) {
+    // A reader that went away is no matter for words.
+    return fault(port.error() == EPIPE
+                     ? ""
+                     : std::string("standard output: ") + std::strerror(port.error()));
+  }
+  return problem;
+}
+
+}  // namespace
+
+Problem run_scpi(Span<const std::string_view> arguments) {
+  ScpiOptions options;
+  if (Problem problem = parse_scpi_options(arguments, options)) {
+    return problem;
+  }
+  if (options.prints_commands) {
+    FileSink sink(stdout);
+    app::TextWriter out(sink);
+    write_command_list(out);
+    return check_output(sink);
+  }
+  return options.listens ? run_on_tcp(options) : run_on_stdio(options);
+}
+
+std::string help_on_scpi() {
+  return R"(usage: emax scpi [options]
+       emax scpi --tcp PORT [options]
+       emax scpi --commands
+
+The instrument's console: SCPI commands, one message a line, executed in order;
+answers on standard output. No echo, no prompt. At the end of the input it
+finishes the queries that it was sent, then ends.
+
+  --tcp PORT             serve one client after the other on 127.0.0.1 instead;
+                         0 chooses a port; which it is, standard error says
+  --pace X               seconds of the simulated bench per second; 1 is real
+                         time (default as fast as it goes)
+  --store FILE           keeps what *SAV saves and the last identification;
+                         without it they are forgotten at the end
+  --commands             print the table of all commands, as Markdown
+)" + help_on_bench_options() +
+         R"(
+Help
+  --help                 this text
+  --version              the version of the program
+)";
+}
+
+}  // namespace emax::host

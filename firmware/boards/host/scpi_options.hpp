@@ -1,0 +1,29 @@
+// The command line of `emax scpi`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "emax/span.hpp"
+
+#include "options.hpp"
+#include "problem.hpp"
+
+namespace emax::host {
+
+struct ScpiOptions {
+  ReportOptions report;  ///< Its bench and its sweep; nothing else of it is asked for.
+  bool listens = false;
+  std::uint16_t port = 0;  ///< With `listens`; 0 for one that the system chooses.
+  double pace = 0.0;       ///< Seconds of the bench per second; 0 for as fast as it goes.
+  std::string store_path;  ///< Empty for a store that forgets.
+  bool prints_commands = false;
+};
+
+/// Reads the arguments behind `emax scpi`.
+///
+/// @param[out] options Of no use if there is a problem.
+Problem parse_scpi_options(Span<const std::string_view> arguments, ScpiOptions& options);
+
+}  // namespace emax::host

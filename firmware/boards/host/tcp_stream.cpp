@@ -1,0 +1,153 @@
+// The console on a TCP port of this machine.
+#include "tcp_stream.hpp"
+
+#include <arpa/inet.h>
+#include <cerrno>
+#include <cstring>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace emax::host {
+
+namespace {
+
+constexpr std::string_view kBusy =
+    "emax: another client is connected; try again when it has gone\n";
+constexpr int kBacklog = 4;
+
+bool is_ready(int socket, short events) noexcept {
+  pollfd one = {socket, events, 0};
+  return ::poll(&one, 1, 0) == 1;
+}
+
+bool is_temporary(int error) noexcept {
+  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
+}
+
+// Whether the peer has closed its side; bytes may still wait to be read.
+bool has_closed(int socket) noexcept { return is_ready(socket, POLLRDHUP | POLLHUP | POLLERR); }
+
+}  // namespace
+
+TcpStream::~TcpStream() {
+  drop_client();
+  if (listener_ >= 0) {
+    ::close(listener_);
+  }
+}
+
+Problem TcpStream::listen(std::uint16_t port) {
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t length = sizeof address;
+  const int yes = 1;
+  listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  if (listener_ < 0 || ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
+      ::bind(listener_, generic, length) != 0 || ::listen(listener_, kBacklog) != 0 ||
+      ::getsockname(listener_, generic, &length) != 0) {
+    return bad_input("--tcp: port " + std::to_string(port) + " of 127.0.0.1: " +
+                     std::strerror(errno) + "; expected a free port, or 0 for any");
+  }
+  port_ = ntohs(address.sin_port);
+  return {};
+}
+
+void TcpStream::accept_client() noexcept {
+  const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (socket < 0) {
+    return;
+  }
+  if (client_ >= 0) {
+    (void)::send(socket, kBusy.data(), kBusy.size(), MSG_NOSIGNAL);
+    ::shutdown(socket, SHUT_WR);
+    ::close(socket);
+    return;
+  }
+  const int yes = 1;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  client_ = socket;
+  input_ended_ = false;
+  line_is_open_ = false;
+}
+
+void TcpStream::drop_client() noexcept {
+  if (client_ >= 0) {
+    ::close(client_);
+    client_ = -1;
+    was_dropped_ = true;
+  }
+}
+
+bool TcpStream::end_session() noexcept {
+  drop_client();
+  return true;
+}
+
+bool TcpStream::is_awaited() const noexcept { return client_ >= 0 && is_ready(listener_, POLLIN); }
+
+void TcpStream::wait(std::chrono::microseconds time, Wishes wishes) {
+  if (was_dropped_) {
+    was_dropped_ = false;  // The instrument sees that nobody is there before the next client comes.
+    return;
+  }
+  const bool listens = client_ < 0 || !has_closed(client_);
+  const auto client_events = static_cast<short>((wishes.to_read && !input_ended_ ? POLLIN : 0) |
+                                                (wishes.to_write ? POLLOUT : 0));
+  pollfd both[] = {{listens ? listener_ : -1, POLLIN, 0}, {client_, client_events, 0}};
+  const timespec timeout = {static_cast<time_t>(time.count() / 1'000'000),
+                            static_cast<long>(time.count() % 1'000'000 * 1000)};
+  if (::ppoll(both, 2, &timeout, nullptr) <= 0) {
+    return;
+  }
+  if (input_ended_ && (both[1].revents & (POLLHUP | POLLERR)) != 0) {
+    drop_client();  // It takes no answers any more.
+  }
+  if ((both[0].revents & POLLIN) != 0 && (client_ < 0 || !has_closed(client_))) {
+    accept_client();
+  }
+}
+
+std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
+  if (client_ < 0 || input_ended_) {
+    return 0;
+  }
+  const ssize_t count = ::recv(client_, bytes.data(), bytes.size(), 0);
+  if (count > 0) {
+    const char last = bytes[static_cast<std::size_t>(count) - 1];
+    line_is_open_ = last != '\n' && last != '\r';
+    return static_cast<std::size_t>(count);
+  }
+  if (count < 0) {
+    if (!is_temporary(errno)) {
+      drop_client();
+    }
+    return 0;
+  }
+  input_ended_ = true;
+  if (!line_is_open_) {
+    return 0;
+  }
+  bytes[0] = '\n';
+  return 1;
+}
+
+std::size_t TcpStream::do_write(Span<const char> bytes) noexcept {
+  const ssize_t count = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (count >= 0) {
+    return static_cast<std::size_t>(count);
+  }
+  if (!is_temporary(errno)) {
+    drop_client();
+  }
+  return 0;
+}
+
+}  // namespace emax::host

@@ -1,0 +1,52 @@
+// The console on a TCP port of this machine.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/span.hpp"
+
+#include "console_port.hpp"
+#include "problem.hpp"
+
+namespace emax::host {
+
+/// Listens on 127.0.0.1 and serves one client after the other.
+///
+/// A client that comes while another one is served is told so in one line and goes. Where the other
+/// one has closed its side already, the new one waits until it is done with.
+class TcpStream final : public ConsolePort {
+ public:
+  TcpStream() noexcept = default;
+  ~TcpStream();
+
+  /// @param[in] port 0 for one that the system chooses.
+  /// @returns Why the port cannot be had, if so.
+  Problem listen(std::uint16_t port);
+  std::uint16_t port() const noexcept { return port_; }
+
+  void wait(std::chrono::microseconds time, Wishes wishes) override;
+  bool input_ended() const noexcept override { return client_ >= 0 && input_ended_; }
+  bool end_session() noexcept override;
+  bool serves_others() const noexcept override { return true; }
+  bool is_awaited() const noexcept override;
+
+ private:
+  std::size_t do_read(Span<char> bytes) noexcept override;
+  std::size_t do_write(Span<const char> bytes) noexcept override;
+  bool do_connected() const noexcept override { return client_ >= 0; }
+  std::uint32_t do_take_lost_count() noexcept override { return 0; }
+
+  void accept_client() noexcept;
+  void drop_client() noexcept;
+
+  int listener_ = -1;
+  int client_ = -1;
+  std::uint16_t port_ = 0;
+  bool was_dropped_ = false;
+  bool input_ended_ = false;
+  bool line_is_open_ = false;
+};
+
+}  // namespace emax::host
