@@ -5,9 +5,11 @@ import io
 import json
 import math
 import os
+from xml.etree import ElementTree
 
 from program_test import DATA, ProgramTest, main
 
+SVG = "{http://www.w3.org/2000/svg}"
 DEVICES = ["piezo_a", "piezo_b", "damped_c"]
 CONDITIONS = {
     ("filter", "order"): (4, "filter order is 4, and 10 in"),
@@ -149,9 +151,37 @@ class CompareOutput(Comparing, ProgramTest):
         self.compare(result(), result(6e-3))
         printed = self.succeed("compare", "0.json", "1.json", "--out", "out")
         self.assertEqual((self.directory / "out/comparison.txt").read_text(), printed)
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), [
+            "comparison.csv", "comparison.gp", "comparison.json", "comparison.svg", "comparison.txt"])
         for option, name in [("--csv", "comparison.csv"), ("--json", "comparison.json")]:
             self.assertEqual((self.directory / "out" / name).read_text(),
                              self.succeed("compare", "0.json", "1.json", option))
+
+    def test_picture(self):
+        odd = "it's <b>\u03b2 & 'co'</b>"
+        self.compare(result(5e-3, bound=5.5e-3, device=odd), result(6e-3, None, device="\u00fc" * 100))
+        self.run_program("compare", "0.json", "1.json", "--out", "out")
+        drawn = ["".join(text.itertext()).strip()
+                 for text in ElementTree.parse(self.directory / "out/comparison.svg").iter(SVG + "text")]
+        self.assertIn("1-2  " + odd, drawn)
+        self.assertIn("1-2  " + "\u00fc" * 12 + "...", drawn)
+        self.assertIn("E_max in mV\u00b2 s", drawn)
+
+    def test_picture_of_many_shows_the_first(self):
+        for i in range(50):
+            self.save(f"{i}.json", result(5e-3 + 1e-4 * i, 1e-6))
+        self.succeed("compare", *(f"{i}.json" for i in range(50)), "--out", "out")
+        picture = (self.directory / "out/comparison.svg").read_text()
+        self.assertIn("40  39.json", picture)
+        self.assertNotIn("41  40.json", picture)
+
+    def test_no_gnuplot(self):
+        self.compare(result(), result(6e-3))
+        done = self.run_program("compare", "0.json", "1.json", "--out", "out", env={"PATH": "/nowhere"})
+        self.assertEqual(done.returncode, 0)
+        self.assert_one_line(done.stderr, "gnuplot")
+        self.assertNotIn("comparison.svg", os.listdir(self.directory / "out"))
+        self.assertIn("comparison.gp", os.listdir(self.directory / "out"))
 
     def test_full_disk(self):
         self.compare(result(), result(6e-3))

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "comparison.hpp"
+#include "comparison_picture.hpp"
 #include "comparison_report.hpp"
 #include "console.hpp"
 #include "nearest.hpp"
@@ -78,12 +79,14 @@ Problem parse_options(Span<const std::string_view> arguments, CompareOptions& op
                          " file; expected two results.json of emax report or more");
 }
 
-Problem write_files(const Comparison& comparison, OutputFiles& files) {
+// What `remark` says is worth a line, and no reason to end otherwise.
+Problem write_files(const Comparison& comparison, OutputFiles& files, Problem& remark) {
   using Write = void (*)(const Comparison&, app::TextWriter&);
   constexpr std::pair<const char*, Write> kFiles[] = {
       {"comparison.txt", write_comparison},
       {"comparison.csv", write_comparison_csv},
       {"comparison.json", write_comparison_json},
+      {kComparisonScript, write_comparison_script},
   };
   for (const auto& file : kFiles) {
     const Write write = file.second;
@@ -91,6 +94,10 @@ Problem write_files(const Comparison& comparison, OutputFiles& files) {
             files.add(file.first, [&](app::TextWriter& out) { write(comparison, out); })) {
       return problem;
     }
+  }
+  constexpr const char* kPictures[] = {kComparisonPicture};
+  if (Problem problem = files.draw(kComparisonScript, kPictures, remark)) {
+    return problem;
   }
   return files.commit();
 }
@@ -129,15 +136,19 @@ Problem run_compare(Span<const std::string_view> arguments) {
     }
   }
   Comparison comparison;
+  Problem remark;
   if (Problem problem = compare_all(std::move(results), comparison)) {
     return problem;
   }
   if (!options.out_directory.empty()) {
-    if (Problem problem = write_files(comparison, files)) {
+    if (Problem problem = write_files(comparison, files, remark)) {
       return problem;
     }
   }
-  return print(comparison, options);
+  if (Problem problem = print(comparison, options)) {
+    return problem;
+  }
+  return remark;
 }
 
 std::string help_on_compare() {

@@ -14,7 +14,7 @@ namespace emax::host {
 namespace {
 
 struct NumberCondition {
-  double Result::* member;
+  double Result::*member;
   const char* name;
   const char* unit;
   const char* option;
@@ -28,7 +28,7 @@ constexpr NumberCondition kNumbers[] = {
 };
 
 struct WordCondition {
-  std::string Result::* member;
+  std::string Result::*member;
   const char* name;
   const char* option;
 };
@@ -71,8 +71,7 @@ Problem check_trials(const Result& result, const Result& first) {
 Problem check_conditions(const Result& result, const Result& first) {
   for (const WordCondition& word : kWords) {
     if (result.*word.member != first.*word.member) {
-      return differ(result, first, word.name, result.*word.member, first.*word.member,
-                    word.option);
+      return differ(result, first, word.name, result.*word.member, first.*word.member, word.option);
     }
   }
   for (const NumberCondition& number : kNumbers) {

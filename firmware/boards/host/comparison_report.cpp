@@ -28,15 +28,6 @@ double rms_percent(const Result& result) noexcept {
   return 100.0 * rms_v(result) / (result.sensitivity * result.limit_mps2);
 }
 
-std::string name_of(const Result& result) {
-  return printable(result.serial.empty() ? result.device : result.device + " " + result.serial);
-}
-
-std::string text_of(const Rank& rank) {
-  const std::string best = std::to_string(rank.best);
-  return rank.best == rank.worst ? best : best + "-" + std::to_string(rank.worst);
-}
-
 void write_conditions(const Result& first, TextWriter& out) {
   out.text("  Filter                    order ").general(first.order, 3).text(", cut-off ");
   out.general(first.cutoff_hz, 10).text(" Hz, gain ");
@@ -158,6 +149,15 @@ void write_device(const Result& result, const Rank& rank, app::JsonWriter& json)
 }
 
 }  // namespace
+
+std::string name_of(const Result& result) {
+  return printable(result.serial.empty() ? result.device : result.device + " " + result.serial);
+}
+
+std::string text_of(const Rank& rank) {
+  const std::string best = std::to_string(rank.best);
+  return rank.best == rank.worst ? best : best + "-" + std::to_string(rank.worst);
+}
 
 void write_comparison(const Comparison& comparison, TextWriter& out) {
   const Result& first = comparison.results.front();

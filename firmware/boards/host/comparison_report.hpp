@@ -1,11 +1,19 @@
 // A comparison to read, as CSV and as JSON.
 #pragma once
 
+#include <string>
+
 #include "emax/app/text_writer.hpp"
 
 #include "comparison.hpp"
 
 namespace emax::host {
+
+/// @returns The device's label or file with its serial number, in one printable line.
+std::string name_of(const Result& result);
+
+/// @returns "2", or "2-4" where the uncertainties do not say which.
+std::string text_of(const Rank& rank);
 
 /// Conditions, a table with one row per device, and a sentence for each pair of neighbours; ASCII
 /// but for the labels.

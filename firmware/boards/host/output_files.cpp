@@ -1,13 +1,19 @@
 // The files of one run in a directory: all of them, complete, or none.
 #include "output_files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "console.hpp"
+#include "gnuplot.hpp"
 #include "stop_request.hpp"
 
 namespace emax::host {
@@ -36,19 +42,40 @@ Problem bad_directory(const std::string& directory, const char* problem) {
                    "; expected a directory that can be written to, or a new one in one that can");
 }
 
+bool is_complete_svg(const std::string& svg) {
+  constexpr std::string_view kEnd = "</svg>";
+  const std::size_t last = svg.find_last_not_of(" \n");
+  return last != std::string::npos && last + 1 >= kEnd.size() &&
+         svg.compare(last + 1 - kEnd.size(), kEnd.size(), kEnd) == 0;
+}
+
+Problem describe(const GnuplotRun& run, const std::string& directory, const char* script) {
+  switch (run.end) {
+    case GnuplotEnd::kDone:
+    case GnuplotEnd::kStopped:
+      return {};
+    case GnuplotEnd::kMissing:
+      return {ExitStatus::kDone, "no pictures: there is no gnuplot; install it (package " +
+                                     std::string("gnuplot-nox) and run gnuplot ") + script +
+                                     " in " + printable(directory)};
+    case GnuplotEnd::kFailed:
+      break;
+  }
+  return fault("no pictures: gnuplot: " + run.reason + "; all other files have been kept");
+}
+
 }  // namespace
 
 OutputFiles::~OutputFiles() {
   for (const std::string& name : written_) {
     std::remove(temporary_path_of(name).c_str());
   }
+  if (!temporary_directory_.empty()) {
+    rmdir(temporary_directory_.c_str());
+  }
   if (directory_is_new_) {
     rmdir(directory_.c_str());
   }
-}
-
-std::string OutputFiles::temporary_path_of(const std::string& name) const {
-  return path_of("." + name + "." + std::to_string(getpid()));
 }
 
 Problem OutputFiles::open(const std::string& directory) {
@@ -67,17 +94,30 @@ Problem OutputFiles::open(const std::string& directory) {
   return {};
 }
 
+Problem OutputFiles::make_temporary_directory() {
+  if (!temporary_directory_.empty()) {
+    return {};
+  }
+  std::string path = path_of(".emax.XXXXXX");
+  if (mkdtemp(path.data()) == nullptr) {
+    return cannot_write(directory_, errno);
+  }
+  temporary_directory_ = path;
+  return {};
+}
+
 Problem OutputFiles::add_file(const char* name, WriteText write, void* context) {
   if (is_directory(path_of(name))) {
     return cannot_write(path_of(name), EISDIR);
   }
-  const std::string temporary = temporary_path_of(name);
-  std::remove(temporary.c_str());
-  std::FILE* file = std::fopen(temporary.c_str(), "wbx");
+  if (Problem problem = make_temporary_directory()) {
+    return problem;
+  }
+  std::FILE* file = std::fopen(temporary_path_of(name).c_str(), "wbx");
   if (file == nullptr) {
     return cannot_write(path_of(name), errno);
   }
-  written_.emplace_back(name);
+  keep(name);
   FileSink sink(file);
   app::TextWriter writer(sink);
   write(context, writer);
@@ -88,6 +128,44 @@ Problem OutputFiles::add_file(const char* name, WriteText write, void* context) 
     return cannot_write(path_of(name), sink.error() != 0 ? sink.error() : errno);
   }
   return {};
+}
+
+void OutputFiles::keep(const std::string& name) {
+  written_.push_back(name);
+  dropped_.erase(std::remove(dropped_.begin(), dropped_.end(), name), dropped_.end());
+}
+
+Problem OutputFiles::draw(const char* script, Span<const char* const> pictures, Problem& remark) {
+  for (const char* picture : pictures) {
+    if (is_directory(path_of(picture))) {
+      return cannot_write(path_of(picture), EISDIR);
+    }
+  }
+  GnuplotRun run = run_gnuplot(temporary_directory_, script);
+  // A full disk is nothing to gnuplot.
+  for (const char* picture : pictures) {
+    if (run.end == GnuplotEnd::kDone && !is_complete_svg(content_of(picture))) {
+      run = {GnuplotEnd::kFailed, std::string(picture) + " is not complete"};
+    }
+  }
+  for (const char* picture : pictures) {
+    if (run.end == GnuplotEnd::kDone) {
+      keep(picture);
+    } else {
+      std::remove(temporary_path_of(picture).c_str());
+      drop(picture);
+    }
+  }
+  if (run.end == GnuplotEnd::kStopped) {
+    return stopped();
+  }
+  remark = describe(run, directory_, script);
+  return {};
+}
+
+std::string OutputFiles::content_of(const char* name) const {
+  std::ifstream file(temporary_path_of(name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 Problem OutputFiles::commit() {

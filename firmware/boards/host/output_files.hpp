@@ -5,16 +5,18 @@
 #include <vector>
 
 #include "emax/app/text_writer.hpp"
+#include "emax/span.hpp"
 
 #include "problem.hpp"
 
 namespace emax::host {
 
-/// Writes files under temporary names and gives them their own at the end, so that neither an error
-/// nor Ctrl-C leaves part of a run behind.
+/// Writes files into a hidden directory inside the one they are for, and moves them there at the
+/// end, so that neither an error nor Ctrl-C leaves part of a run behind.
 ///
 ///     if (Problem problem = files.open(directory)) ...     before the long work
 ///     if (Problem problem = files.add("report.txt", write)) ...
+///     if (Problem problem = files.draw("pictures.gp", pictures, remark)) ...
 ///     if (Problem problem = files.commit()) ...
 ///
 /// Without `commit()` the destructor removes what there is, the directory too if it is new.
@@ -34,7 +36,20 @@ class OutputFiles final {
   template <typename Write>
   Problem add(const char* name, Write write);
 
-  /// Has a file of an earlier run removed by `commit()`, because this run has none of that name.
+  /// Has gnuplot run a script that has been added. Either all of its pictures are files of this run
+  /// then, or none is, and those of an earlier run go.
+  ///
+  /// @param[in]  pictures The names of the SVG files that the script makes.
+  /// @param[out] remark   Why there are none: that there is no gnuplot (kDone), or its fault. What
+  ///                      else there is can be kept.
+  /// @returns What ends the run, if there is something.
+  Problem draw(const char* script, Span<const char* const> pictures, Problem& remark);
+
+  /// @returns What a file of this run holds, before `commit()`; empty if there is none.
+  std::string content_of(const char* name) const;
+
+  /// Has a file of an earlier run removed by `commit()`, unless this run comes to add one of that
+  /// name.
   void drop(const char* name) { dropped_.emplace_back(name); }
 
   /// Puts all files in place, over those of an earlier run.
@@ -45,10 +60,15 @@ class OutputFiles final {
 
   Problem add_file(const char* name, WriteText write, void* context);
   std::string path_of(const std::string& name) const { return directory_ + "/" + name; }
-  std::string temporary_path_of(const std::string& name) const;
+  std::string temporary_path_of(const std::string& name) const {
+    return temporary_directory_ + "/" + name;
+  }
+  Problem make_temporary_directory();
+  void keep(const std::string& name);
 
   std::string directory_;
-  std::vector<std::string> written_;  // Still under their temporary names.
+  std::string temporary_directory_;   // Empty before the first file.
+  std::vector<std::string> written_;  // Still in the temporary directory.
   std::vector<std::string> dropped_;
   bool directory_is_new_ = false;
 };

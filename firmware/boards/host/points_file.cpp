@@ -7,6 +7,7 @@
 #include "emax/app/points_reader.hpp"
 #include "emax/app/reference_uncertainty.hpp"
 #include "emax/app/text_writer.hpp"
+#include "emax/capacity.hpp"
 
 #include "console.hpp"
 #include "text_file.hpp"
@@ -69,7 +70,8 @@ Problem read_points(const std::string& path, double reference_percent, Frequency
     return problem;
   }
   if (text.empty()) {
-    return bad_input(name + ": the file is empty; expected a table of 3 to 64 points");
+    return bad_input(name + ": the file is empty; expected a table of 3 to " EMAX_TEXT_OF(
+                                EMAX_MAX_POINTS) " points");
   }
   static app::PointsReader reader;
   const app::PointsError error = parse(text, reader);

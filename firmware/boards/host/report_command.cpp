@@ -20,6 +20,7 @@
 #include "options.hpp"
 #include "output_files.hpp"
 #include "points_file.hpp"
+#include "report_files.hpp"
 #include "stop_request.hpp"
 #include "text_file.hpp"
 
@@ -78,13 +79,13 @@ Problem describe(const app::Evaluation& evaluation, const ReportOptions& options
 // What a report is written from.
 struct Results {
   const app::Evaluation& evaluation;
-  const char* points_name;              // Null if there is no table of points.
-  const app::Measurement* measurement;  // Null without one.
+  const app::ReportContext& context;
 };
 
-Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evaluation& evaluation) {
+Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evaluation& evaluation,
+              app::EvaluationWorkspace& workspace) {
   if (!options.model_text.empty()) {
-    const Status status = evaluation.start_from_model(options.device, options.settings);
+    const Status status = evaluation.start_from_model(options.device, options.settings, workspace);
     return status == Status::kOk ? Problem{} : describe(evaluation, options);
   }
   static FrequencyResponse points;
@@ -94,13 +95,14 @@ Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evalua
                  read_points(options.points_path, options.reference_uncertainty_percent, points)) {
     return problem;
   }
-  const Status status = evaluation.start_from_points(points, options.settings);
+  const Status status = evaluation.start_from_points(points, options.settings, workspace);
   return status == Status::kOk ? Problem{} : describe(evaluation, options);
 }
 
 // Runs an evaluation that has been started, with room for the trials' values, so that each is
 // computed once.
-Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evaluation& evaluation) {
+Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evaluation& evaluation,
+            app::EvaluationWorkspace& workspace) {
   const std::uint32_t trials =
       options.settings.adaptive ? kMaxStoredTrials : options.settings.trials;
   const std::size_t room = std::min(trials, kMaxStoredTrials);
@@ -113,7 +115,7 @@ Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evalua
       return stopped();
     }
     progress.show(name_of(evaluation.stage()), evaluation.progress());
-    evaluation.step();
+    evaluation.step(workspace);
   }
   evaluation.lend_trial_store({});
   return evaluation.status() == Status::kOk ? Problem{} : describe(evaluation, options);
@@ -121,75 +123,21 @@ Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evalua
 
 // Everything from the measurement to the results.
 Problem work(const ReportOptions& options, BenchJob& bench, app::Evaluation& evaluation) {
+  static app::EvaluationWorkspace workspace;
   ConsoleProgress progress;
   Problem problem = options.measures() ? bench.run(options, progress) : Problem{};
   if (!problem) {
-    problem = start(options, bench.sweep(), evaluation);
+    problem = start(options, bench.sweep(), evaluation, workspace);
   }
-  return problem ? problem : run(options, progress, evaluation);
-}
-
-// The tables; they need nothing but the evaluation.
-struct Table {
-  const char* name;
-  void (*write)(const app::Evaluation& evaluation, app::TextWriter& out) noexcept;
-  bool needs_points;
-};
-
-constexpr Table kTables[] = {
-    {"frequency_response.csv", app::write_frequency_response_csv, true},
-    {"impulse_response.csv", app::write_impulse_response_csv, false},
-    {"signal.csv", app::write_signal_csv, false},
-    {"trend.csv", app::write_trend_csv, false},
-    {"histogram.csv", app::write_histogram_csv, false},
-};
-
-Problem add_tables(const app::Evaluation& evaluation, OutputFiles& files) {
-  for (const Table& table : kTables) {
-    if (table.needs_points && evaluation.source() != app::Source::kPoints) {
-      files.drop(table.name);
-      continue;
-    }
-    Problem problem =
-        files.add(table.name, [&](app::TextWriter& out) { table.write(evaluation, out); });
-    if (problem) {
-      return problem;
-    }
-  }
-  return {};
+  return problem ? problem : run(options, progress, evaluation, workspace);
 }
 
 void write_text(const Results& results, app::TextWriter& out) {
-  if (results.measurement != nullptr) {
-    write_report(results.evaluation, *results.measurement, out);
-  } else {
-    write_report(results.evaluation, results.points_name, out);
-  }
+  write_report(results.evaluation, results.context, out);
 }
 
 void write_results(const Results& results, app::TextWriter& out) {
-  if (results.measurement != nullptr) {
-    write_json(results.evaluation, *results.measurement, out);
-  } else {
-    write_json(results.evaluation, results.points_name, out);
-  }
-}
-
-Problem write_files(const Results& results, OutputFiles& files) {
-  Problem problem =
-      files.add("report.txt", [&](app::TextWriter& out) { write_text(results, out); });
-  if (problem) {
-    return problem;
-  }
-  problem = files.add("results.json", [&](app::TextWriter& out) { write_results(results, out); });
-  if (problem) {
-    return problem;
-  }
-  problem = add_tables(results.evaluation, files);
-  if (problem) {
-    return problem;
-  }
-  return stop_requested() ? stopped() : files.commit();
+  write_json(results.evaluation, results.context, out);
 }
 
 template <typename Write>
@@ -201,36 +149,23 @@ Problem print(Write write) {
 }
 
 // The files and the text of a measurement that has led to no result: what there is.
-Problem keep(const app::Measurement& measurement, const app::Evaluation* refused, bool json,
+Problem keep(const app::ReportContext& context, const app::Evaluation* refused, bool json,
              OutputFiles* files) {
-  const auto text = [&](app::TextWriter& out) { write_measurement(measurement, refused, out); };
-  const auto results = [&](app::TextWriter& out) {
-    write_measurement_json(measurement, refused, out);
-  };
-  const auto points = [&](app::TextWriter& out) { write_measured_points_csv(measurement, out); };
-  if (files != nullptr) {
-    Problem problem = files->add("report.txt", text);
-    problem = problem ? problem : files->add("results.json", results);
-    problem = problem ? problem : files->add("frequency_response.csv", points);
-    for (const Table& table : kTables) {
-      if (!table.needs_points) {
-        files->drop(table.name);
-      }
-    }
-    problem = problem ? problem : files->commit();
-    if (problem) {
-      return problem;
-    }
+  if (Problem problem =
+          files != nullptr ? write_fault_files(context, refused, *files) : Problem{}) {
+    return problem;
   }
-  return json ? print(results) : print(text);
+  return json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
+              : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
 }
 
 // The fault, and in the same line what became of what there is.
-Problem keep_and_report(const Problem& fault, const BenchJob& bench,
-                        const app::Evaluation& evaluation, bool json, OutputFiles* files) {
-  const app::Evaluation* refused = bench.sweep().status() == Status::kOk ? &evaluation : nullptr;
+Problem keep_and_report(const Problem& fault, const Results& results, bool json,
+                        OutputFiles* files) {
+  const bool was_swept = results.context.measurement->sweep.status() == Status::kOk;
+  const app::Evaluation* refused = was_swept ? &results.evaluation : nullptr;
   Problem problem = fault;
-  if (const Problem kept = keep(bench.measurement(), refused, json, files)) {
+  if (const Problem kept = keep(results.context, refused, json, files)) {
     problem.line += kept.line.empty() ? "" : "; " + kept.line;
   }
   return problem;
@@ -250,19 +185,26 @@ Problem run_report(Span<const std::string_view> arguments) {
   }
   static BenchJob bench;
   static app::Evaluation evaluation;
-  if (Problem problem = work(options, bench, evaluation)) {
-    const bool keeps = problem.status == ExitStatus::kFault && bench.has_measured();
-    return keeps ? keep_and_report(problem, bench, evaluation, options.json, files) : problem;
-  }
+  const Problem problem_of_work = work(options, bench, evaluation);
   const std::string points_name = name_of_input(options.points_path);
   const app::Measurement measurement = bench.measurement();
-  const Results results = {evaluation, options.points_path.empty() ? nullptr : points_name.c_str(),
-                           options.measures() ? &measurement : nullptr};
-  if (Problem problem = files != nullptr ? write_files(results, *files) : Problem{}) {
+  const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
+                                      options.measures() ? &measurement : nullptr, options.labels(),
+                                      options.in_g};
+  const Results results = {evaluation, context};
+  if (problem_of_work) {
+    const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
+    return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
+  }
+  Problem remark;
+  if (Problem problem =
+          files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{}) {
     return problem;
   }
-  return options.json ? print([&](app::TextWriter& out) { write_results(results, out); })
-                      : print([&](app::TextWriter& out) { write_text(results, out); });
+  const Problem problem = options.json
+                              ? print([&](app::TextWriter& out) { write_results(results, out); })
+                              : print([&](app::TextWriter& out) { write_text(results, out); });
+  return problem ? problem : remark;
 }
 
 }  // namespace emax::host

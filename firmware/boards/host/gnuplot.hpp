@@ -1,0 +1,30 @@
+// gnuplot, where there is one: draws what a script asks for, in a directory.
+#pragma once
+
+#include <string>
+
+namespace emax::host {
+
+enum class GnuplotEnd {
+  kDone,
+  kMissing,  ///< There is none on the PATH.
+  kFailed,
+  kStopped,  ///< By Ctrl-C.
+};
+
+struct GnuplotRun {
+  GnuplotEnd end = GnuplotEnd::kDone;
+  std::string reason = {};  ///< Of kFailed, as the middle of a line.
+};
+
+/// Runs gnuplot without a shell, without the user's own settings and for at most 20 s.
+///
+/// @param[in] directory Where it runs: names in the script are relative to it.
+/// @param[in] script    The name of a file there.
+GnuplotRun run_gnuplot(const std::string& directory, const char* script);
+
+/// @returns Text as a string of a script. Single quotes and no line feeds: nothing in it can end
+/// the string, and nothing is expanded.
+std::string gnuplot_string(const std::string& text);
+
+}  // namespace emax::host

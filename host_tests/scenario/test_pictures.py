@@ -1,0 +1,675 @@
+"""Labels, pictures and the page of `emax report`: what they show, whatever they are given and wherever they go.
+
+usage: test_pictures.py PROGRAM DATA_DIRECTORY [unittest arguments]
+"""
+
+import collections
+import contextlib
+import csv
+import html
+import json
+import math
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import xml.etree.ElementTree
+
+from browser import Browser
+from program_test import DATA, MODEL, QUICK, ProgramTest, main
+
+TABLE1 = ["--points", DATA / "djb_a1800v.csv"]
+PICTURES = ["frequency_response", "histogram", "impulse_response", "signal", "trend"]
+TABLES = ["histogram.csv", "impulse_response.csv", "signal.csv", "trend.csv"]
+WITHOUT_PICTURES = sorted([*TABLES, "pictures.gp", "report.html", "report.txt", "results.json"])
+TREND = ["--trials", "1000", "--trend", "0.001,0.002"]
+SVG = "{http://www.w3.org/2000/svg}"
+
+NASTY = {
+    "device": "\"q\" 'q' <b>&amp; \\n %d $(touch pwned) `touch pwned` @x {/Bold y}_z^2",
+    "serial": "1\n2\r\n3\x01\x7f\t4",
+    "operator": "J\udcff\udcfeM\udcc3(",  # Bytes that are no UTF-8.
+    "date": "\u202e2024 \u2028 \U0001d11e Ł",
+    "note": "'; system('touch pwned'); # \\" + "<script>alert(1)</script>" + "n" * 10_000,
+}
+
+
+def options_of(labels: dict) -> list[str]:
+    return [f"--{name}={value}" for name, value in labels.items()]
+
+
+def texts_of(path: pathlib.Path) -> list[str]:
+    """The words in a picture, a string for each line."""
+    root = xml.etree.ElementTree.parse(path).getroot()
+    return ["".join(text.itertext()).strip() for text in root.iter(f"{SVG}text")]
+
+
+class PictureTest:
+    def report(self, *arguments, **options) -> subprocess.CompletedProcess:
+        """A run that must end well, with its files in out/."""
+        result = self.run_program("report", *arguments, "--out", "out", **options)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        return result
+
+    def out(self, name: str) -> pathlib.Path:
+        return self.directory / "out" / name
+
+    def content(self, name: str) -> str:
+        return self.out(name).read_text(encoding="utf-8")
+
+    def listed(self) -> list[str]:
+        return sorted(os.listdir(self.directory / "out"))
+
+    def fake_gnuplot(self, script: str) -> dict:
+        """An environment in which gnuplot is a shell script, which runs where the pictures should come to be."""
+        (self.directory / "bin").mkdir(exist_ok=True)
+        program = self.directory / "bin/gnuplot"
+        program.write_text("#!/bin/sh\nPATH=/usr/bin:/bin\n" + script)
+        program.chmod(0o755)
+        return os.environ | {"PATH": str(self.directory / "bin")}
+
+    def assert_files_are_whole(self, directory="out"):
+        """Whatever there is, is complete, and nothing is left of what a run needs in between."""
+        ends = {".svg": "</svg>\n\n", ".html": "</html>\n", ".json": "}\n", ".gp": "unset output\n"}
+        for path in (self.directory / directory).iterdir():
+            text = path.read_text(encoding="utf-8")
+            self.assertTrue(text.endswith(ends.get(path.suffix, "\n")), path)
+            if path.suffix == ".json":
+                json.loads(text)
+            if path.suffix == ".svg":
+                xml.etree.ElementTree.fromstring(text)
+            if path.suffix == ".csv":
+                rows = list(csv.reader(text.splitlines()))
+                self.assertEqual({len(row) for row in rows}, {len(rows[0])}, path)
+
+
+class Labels(PictureTest, ProgramTest):
+    GIVEN = {"device": "DJB A/1800/V", "serial": "4711", "operator": "J. Doe", "date": "2024-05-01", "note": "as new"}
+
+    def test_report_json_and_page(self):
+        output = self.report(*MODEL, *QUICK, *options_of(self.GIVEN)).stdout.decode()
+        self.assertIn("\nLABELS (as given)\n  Device                    DJB A/1800/V\n", output)
+        for name, value in [("Serial number", "4711"), ("Operator", "J. Doe"), ("Date", "2024-05-01")]:
+            self.assertRegex(output, rf"\n  {name} +{re.escape(value)}\n")
+        self.assertEqual(json.loads(self.content("results.json"))["labels"], self.GIVEN)
+        page = self.content("report.html")
+        for value in self.GIVEN.values():
+            self.assertIn(f"<td>{value}", page)
+        self.assertIn("<title>DJB A/1800/V - emax report</title>", page)
+        self.assertIn("DJB A/1800/V: the signal with the largest error", texts_of(self.out("signal.svg")))
+
+    def test_labels_take_part_in_nothing(self):
+        self.report(*MODEL, *TREND)
+        plain = {name: self.content(name) for name in [*TABLES, "report.txt", "results.json"]}
+        self.assertNotIn("LABELS", plain["report.txt"])
+        self.assertNotIn("labels", json.loads(plain["results.json"]))
+        self.report(*MODEL, *TREND, *options_of(self.GIVEN))
+        for name in TABLES:
+            self.assertEqual(self.content(name), plain[name])
+        results = json.loads(self.content("results.json"))
+        del results["labels"]
+        self.assertEqual(results, json.loads(plain["results.json"]))
+
+    def test_one_label_alone(self):
+        labels = self.json_of(*MODEL, *QUICK, "--serial", "17")["labels"]
+        self.assertEqual(labels, {"device": None, "serial": "17", "operator": None, "date": None, "note": None})
+
+    def test_nasty_labels(self):
+        self.report(*MODEL, *TREND)
+        tables = {name: self.content(name) for name in TABLES}
+        output = self.report(*MODEL, *TREND, *options_of(NASTY)).stdout.decode("utf-8")
+        self.assertNotIn("pwned", " ".join(set(self.files()) - {"out"}))
+        self.assertEqual({name: self.content(name) for name in TABLES}, tables)
+        # As text: one line each, with what no line can hold replaced, and cut where it says so.
+        block = output.split("LABELS (as given)\n")[1].split("\n\n")[0].split("\n")
+        self.assertEqual([line[:28].strip() for line in block], ["Device", "Serial number", "Operator", "Date", "Note"])
+        self.assertEqual(block[0][28:], NASTY["device"])
+        self.assertEqual(block[1][28:], "1 2  3?? 4")
+        self.assertEqual(block[2][28:], "J??M?(")
+        self.assertEqual(block[3][28:], "?2024 ? \U0001d11e Ł")
+        self.assertEqual(block[4][28:], NASTY["note"][:240] + " ...")
+        # As JSON: all of it.
+        labels = json.loads(self.content("results.json"))["labels"]
+        replaced = NASTY | {"operator": "J\ufffd\ufffdM\ufffd("}
+        self.assertEqual(labels, replaced)
+        # As a page: escaped, so that reading it gives back what went in.
+        page = self.content("report.html")
+        self.assertNotIn("<script", page)
+        cells = re.findall(r'<th scope="row">(?:Device|Note)</th><td>(.*?)\n</td>', page, re.DOTALL)
+        self.assertEqual([html.unescape(cell) for cell in cells[:2]], [NASTY["device"], NASTY["note"]])
+        self.assertNotIn("<", cells[1])
+        # As titles: the characters, none of which has a meaning to gnuplot or to XML.
+        for picture in PICTURES[1:]:
+            title = texts_of(self.out(f"{picture}.svg"))
+            self.assertTrue(any(NASTY["device"][:36] + " ..." in line for line in title), title)
+
+    def test_labels_of_a_measurement_that_failed(self):
+        result = self.run_program("report", "--bench-fault", "late-block", *options_of(NASTY), "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("LABELS (as given)", result.stdout.decode("utf-8"))
+        self.assertEqual(json.loads(self.content("results.json"))["labels"]["serial"], NASTY["serial"])
+        self.assertIn("<title>&quot;q&quot; 'q' &lt;b&gt;&amp;amp;", self.content("report.html"))
+        self.assertEqual(self.listed(), ["frequency_response.csv", "report.html", "report.txt", "results.json"])
+
+    def test_refused(self):
+        for option in ["--device", "--serial", "--operator", "--date", "--note"]:
+            self.refuse_option(option, None, "no value", "expected")
+            self.refuse(["report", *MODEL, option, ""], f"{option}: no value")
+            self.refuse(["report", *MODEL, option, "a", f"{option}=b"], f"{option}: given twice")
+
+
+class UnitsOfGravity(PictureTest, ProgramTest):
+    def test_report_and_page(self):
+        self.report(*MODEL, *QUICK, "--units", "g", "--limit", "9.80665")
+        report, page = self.content("report.txt"), self.content("report.html")
+        self.assertRegex(report, r"Limit a +9\.80665 m/s\^2 \(1 g\), as given")
+        # 1.037 V/(m/s^2) times 9.80665 m/s^2 for each g.
+        self.assertRegex(report, r"S = 1\.037 V/\(m/s\^2\) \(10\.1695 V/g\), standard u = 0\.003 \(0\.0294 V/g\)")
+        self.assertIn("9.80665 m/s² (1 g)", page)
+        self.assertIn("1.037 V/(m/s²) (10.1695 V/g)", page)
+
+    def test_measurement(self):
+        report = self.succeed("report", *QUICK, "--units", "g")
+        rows = [line.split() for line in report.splitlines() if re.match(r" +\d+ +\d\.\d+ ", line)]
+        self.assertEqual(len(rows), 42)
+        for row in rows:
+            self.assertEqual(len(row), 11)
+            # Rounded to 1e-5 V/(m/s^2) and 1e-4 V/g.
+            self.assertAlmostEqual(float(row[2]), 9.80665 * float(row[1]), delta=0.5e-4 + 9.8 * 0.5e-5)
+        self.assertLessEqual(max(map(len, report.splitlines())), 130)
+
+    def test_only_what_is_to_be_read_changes(self):
+        plain = self.succeed("report", *TABLE1, *QUICK)
+        self.assertEqual(self.succeed("report", *TABLE1, *QUICK, "--units", "si"), plain)
+        self.assertNotIn(" g)", plain)
+        self.assertEqual(self.json_of(*TABLE1, *QUICK, "--units", "g"), self.json_of(*TABLE1, *QUICK))
+        self.refuse_option("--units", "G", '"G" given', "expected si or g")
+
+
+class Pictures(PictureTest, ProgramTest):
+    def test_all_of_them(self):
+        self.report("--trials", "1000", "--device", "Sensor 1")
+        pictures = [f"{name}.svg" for name in PICTURES]
+        self.assertEqual(self.listed(), sorted([*pictures, "frequency_response.csv", *WITHOUT_PICTURES]))
+        units = {
+            "frequency_response": ["amplitude in V/(m/s²)", "phase in °", "frequency in Hz"],
+            "histogram": ["E in 10⁻³ V² s", "trials per bin", "95 % coverage interval", "E at the estimates"],
+            "impulse_response": ["response in 10³ V/(m/s)", "time in ms", "k = ka − kf", "settled to 5 %"],
+            "signal": ["x in m/s²", "error y in V", "time in ms"],
+            "trend": ["E in 10⁻³ V² s", "length T of the signal in ms", "proven: no signal has more"],
+        }
+        conditions = {
+            "frequency_response": "S = 1.0361 V/(m/s²), f0 = 4072.97 Hz, β = 0.3182",
+            "histogram": "T = 2 ms, a = 1.0361 m/s², filter of order 10, 1000 Hz, integral-square error",
+            "impulse_response": "reference filter: Butterworth, order 10, cutoff 1000 Hz, gain 1.0361 V/(m/s²)",
+            "signal": "T = 2 ms, a = 1.0361 m/s², filter of order 10, 1000 Hz, integral-square error",
+            "trend": "a = 1.0361 m/s², filter of order 10, 1000 Hz, integral-square error",
+        }
+        for name, words in units.items():
+            with self.subTest(name):
+                texts = texts_of(self.out(f"{name}.svg"))
+                self.assertLessEqual({*words, conditions[name]}, set(texts))
+                self.assertTrue(texts[0].startswith("Sensor 1: ") or any(t.startswith("Sensor 1: ") for t in texts))
+                svg = self.content(f"{name}.svg")
+                self.assertNotIn("<script", svg)
+                references = set(re.findall(r"""href=['"]([^'"]*)""", svg))
+                self.assertTrue(all(address.startswith("#") for address in references), references)
+
+    def test_readme_shows_what_the_program_draws(self):
+        self.report()
+        shown = DATA.parent.parent / "firmware/boards/host/pictures"
+        self.assertEqual(sorted(path.name for path in shown.iterdir()), [f"{name}.svg" for name in PICTURES])
+        for name in PICTURES:
+            self.assertEqual(texts_of(shown / f"{name}.svg"), texts_of(self.out(f"{name}.svg")))
+            version = [re.search(r"<desc>.*</desc>", text)[0] for text in
+                       [self.content(f"{name}.svg"), (shown / f"{name}.svg").read_text(encoding="utf-8")]]  # fmt: skip
+            if version[0] == version[1]:  # Another gnuplot may set its lines elsewhere.
+                self.assertEqual(self.content(f"{name}.svg"), (shown / f"{name}.svg").read_text(encoding="utf-8"))
+
+    def test_script_gives_the_same_again(self):
+        self.report(*TREND, "--device", NASTY["device"])
+        before = {name: self.content(f"{name}.svg") for name in PICTURES}
+        for name in PICTURES:
+            self.out(f"{name}.svg").unlink()
+        drawn = subprocess.run(["gnuplot", "pictures.gp"], cwd=self.directory / "out", capture_output=True, check=True)
+        self.assertEqual((drawn.stdout, drawn.stderr), (b"", b""))
+        self.assertEqual({name: self.content(f"{name}.svg") for name in PICTURES}, before)
+
+    def test_curves_differ_without_colour(self):
+        self.report(*MODEL, *TREND)
+        root = xml.etree.ElementTree.parse(self.out("impulse_response.svg")).getroot()
+        curves = [path for path in root.iter(f"{SVG}path") if len(path.get("d")) > 2000]
+        self.assertEqual(len(curves), 3)
+        self.assertEqual(len({path.get("stroke-dasharray") for path in curves}), 3)
+
+    def test_the_fit_is_the_model(self):
+        # What gnuplot computes as the fit, against the columns that the program writes.
+        self.report(*TABLE1, *QUICK)
+        script = self.content("pictures.gp")
+        lines = [line for line in script.splitlines() if re.match(r"(S|f0|beta|amplitude\(f\)|phase\(f\)) = ", line)]
+        self.assertEqual(len(lines), 5)
+        with open(self.out("frequency_response.csv"), encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        lines += [f"print sprintf('%.12g %.12g', amplitude({row['f_hz']}.0), phase({row['f_hz']}.0))" for row in rows]
+        drawn = subprocess.run(["gnuplot", "-"], input="\n".join(lines), capture_output=True, text=True, check=True)
+        for row, line in zip(rows, drawn.stderr.splitlines(), strict=True):
+            amplitude, phase = map(float, line.split())
+            self.assertAlmostEqual(amplitude, float(row["model_amplitude"]), delta=1e-10)
+            self.assertAlmostEqual(phase, float(row["model_phase_deg"]), delta=1e-8)
+
+    def test_marks_are_where_the_results_are(self):
+        self.report(*MODEL, *TREND, "--probability", "0.9")
+        results, script = json.loads(self.content("results.json")), self.content("pictures.gp")
+        value = {name: float(re.search(rf"^{name} = (.*)$", script, re.MULTILINE)[1]) for name in ["low", "high", "E"]}
+        interval = results["monte_carlo"]["interval"]
+        for name, expected in [("low", interval[0]), ("high", interval[1]), ("E", results["energy"]["E"])]:
+            self.assertAlmostEqual(value[name], 1e3 * expected, delta=1e-12)
+        self.assertIn("90 % coverage interval", texts_of(self.out("histogram.svg")))
+        bound = re.search(r"^0\.002,(.*)$", script, re.MULTILINE)[1]
+        self.assertEqual(float(bound), results["energy"]["bound"])
+
+    def test_only_where_there_are_numbers(self):
+        device = ["--model", "1.037,4073,0.3182"]
+        self.report(*device, "--trend", "none")
+        pictures = ["impulse_response.svg", "signal.svg"]
+        self.assertEqual(self.listed(), sorted([*WITHOUT_PICTURES, *pictures]))
+        # Trials that all came to one energy have no histogram to be drawn.
+        self.report("--model", "1.037,4073,0.3182,1e-300,0,0", *QUICK)
+        self.assertEqual(self.listed(), sorted([*WITHOUT_PICTURES, *pictures]))
+
+    def test_pictures_of_an_earlier_run_go(self):
+        self.report(*TABLE1, *TREND)
+        self.assertIn("frequency_response.svg", self.listed())
+        self.report(*MODEL, *TREND)
+        self.assertNotIn("frequency_response.svg", self.listed())
+        self.assertIn("trend.svg", self.listed())
+        self.assertEqual(self.run_program("report", "--bench-fault", "late-block", "--out", "out").returncode, 3)
+        self.assertEqual(self.listed(), ["frequency_response.csv", "report.html", "report.txt", "results.json"])
+
+    def test_a_device_that_rings_for_long(self):
+        # 5 % of the peak after about ln(20)/(2 pi f0 beta) = 119 ms: 486 periods in 1001 rows of the table.
+        self.report("--model", "1,4073,0.001", "--trend", "none")
+        with open(self.out("impulse_response_start.csv"), encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        step = float(rows[1]["t_s"]) - float(rows[0]["t_s"])
+        self.assertGreater(1 / (step * 4073), 15)  # Rows for each period.
+        # ka = S w0/sqrt(1 - beta^2) exp(-beta w0 t) sin(w0 sqrt(1 - beta^2) t)
+        for row in rows[:: len(rows) // 20]:
+            time_s, angular, damping = float(row["t_s"]), 2 * math.pi * 4073, 0.001
+            root = math.sqrt(1 - damping**2)
+            ka = angular / root * math.exp(-damping * angular * time_s) * math.sin(angular * root * time_s)
+            self.assertAlmostEqual(float(row["ka"]), ka, delta=1e-7 * angular)
+            self.assertAlmostEqual(float(row["k"]), float(row["ka"]) - float(row["kf"]), delta=1e-9 * angular)
+        self.report(*MODEL, *QUICK)
+        self.assertNotIn("impulse_response_start.csv", self.listed())
+
+    def test_a_device_that_has_settled_long_before_the_end(self):
+        self.report(*MODEL, "--order", "1", "--time", "0.02", *QUICK)
+        results = json.loads(self.content("results.json"))
+        with open(self.out("impulse_response_start.csv"), encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        end = 1.5 * results["impulse_response"]["settling_time_s"]
+        self.assertAlmostEqual(float(rows[-1]["t_s"]), end, delta=1e-12)
+        self.assertEqual(len(rows), 1001)
+
+
+class WithoutGnuplot(PictureTest, ProgramTest):
+    def test_none_on_the_path(self):
+        expected = self.succeed("report", *MODEL, *TREND)
+        for path in ["/nonexistent", "", "bin:."]:
+            with self.subTest(path):
+                environment = self.fake_gnuplot("exit 0\n") | {"PATH": path}  # Relative entries do not count.
+                result = self.run_program("report", *MODEL, *TREND, "--out", "out", env=environment)
+                self.assertEqual((result.returncode, result.stdout.decode()), (0, expected))
+                self.assert_one_line(result.stderr, "no pictures", "gnuplot-nox", "run gnuplot pictures.gp in out")
+                self.assertEqual(self.listed(), WITHOUT_PICTURES)
+                self.assertIn("No pictures", self.content("report.html"))
+                self.assertNotIn("<figure", self.content("report.html"))
+        subprocess.run(["gnuplot", "pictures.gp"], cwd=self.directory / "out", check=True)
+        self.assertEqual(self.listed(), sorted([*WITHOUT_PICTURES, *(f"{name}.svg" for name in PICTURES[1:])]))
+
+    def test_one_that_fails(self):
+        self.report(*MODEL, *TREND)
+        scripts = {
+            "printf '\\n\\nset foo\\n    ^\\nline 3: no such thing\\n\\n' >&2; exit 1\n": "no such thing",
+            "echo '<svg' > signal.svg; exit 0\n": "impulse_response.svg is not complete",
+            "kill -9 $$\n": "it has ended early",
+            "yes x | head -c 100000 >&2; exit 2\n": "x",
+        }
+        for script, words in scripts.items():
+            with self.subTest(words):
+                result = self.run_program("report", *MODEL, *TREND, "--out", "out", env=self.fake_gnuplot(script))
+                self.assertEqual(result.returncode, 3)
+                self.assert_one_line(result.stderr, "no pictures: gnuplot: ", words, "all other files have been kept")
+                self.assertEqual(result.stdout.decode(), self.content("report.txt"))
+                self.assertEqual(self.listed(), WITHOUT_PICTURES)
+                self.assert_files_are_whole()
+
+    def test_one_that_hangs(self):
+        start = time.monotonic()
+        result = self.run_program("report", *MODEL, *QUICK, "--out", "out", env=self.fake_gnuplot("exec sleep 100\n"))
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "not ended within 20 s")
+        self.assertLess(time.monotonic() - start, 40)
+        self.assertEqual(self.listed(), WITHOUT_PICTURES)
+
+    def test_stop_while_it_draws(self):
+        environment = self.fake_gnuplot("echo $$ > ../../started; exec sleep 100\n")
+        process = self.start_program("report", *MODEL, *QUICK, "--out", "out", env=environment)
+        started = self.directory / "started"
+        deadline = time.monotonic() + 30
+        while not (started.exists() and started.read_text().strip()):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        output, error = process.communicate(timeout=20)
+        self.assertEqual((process.returncode, output, error), (130, b"", b"emax: stopped\n"))
+        self.assertFalse((self.directory / "out").exists())
+        self.assertRaises(ProcessLookupError, os.kill, int(started.read_text()), 0)
+
+    def test_nothing_of_the_user_is_read(self):
+        (self.directory / ".gnuplot").write_text("set terminal dumb\nsystem('touch pwned')\n")
+        self.report(*MODEL, *QUICK, env=os.environ | {"HOME": str(self.directory)})
+        self.assertNotIn("pwned", " ".join(self.files()))
+
+    def test_a_directory_in_the_way_of_a_picture(self):
+        (self.directory / "out/signal.svg").mkdir(parents=True)
+        self.refuse(["report", *MODEL, *QUICK, "--out", "out"], "emax: --out: out/signal.svg", "expected a directory")
+
+
+class FullDisk(PictureTest, ProgramTest):
+    def run_on(self, directory: str, **options) -> int:
+        """The program ends with 0, or with 3 and one line, and every file there is whole."""
+        result = self.run_program("report", *TABLE1, *TREND, "--out", directory, **options)
+        self.assertIn(result.returncode, [0, 3])
+        if result.returncode == 3:
+            self.assert_one_line(result.stderr)
+        else:
+            self.assertEqual(result.stderr, b"")
+        if (self.directory / directory).exists():
+            self.assert_files_are_whole(directory)
+        return result.returncode
+
+    def test_limit_of_file_size(self):
+        statuses = set()
+        # Between the least and the most that a file takes: 250 bytes of trend.csv, 400 kB of report.html.
+        for limit in [100, 500, 5_000, 20_000, 69_000, 90_000, 110_000, 160_000, 1_000_000]:
+            with self.subTest(limit):
+                shutil.rmtree(self.directory / "out", ignore_errors=True)
+                set_limit = lambda limit=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))  # noqa: E731
+                status = self.run_on("out", preexec_fn=set_limit)
+                statuses.add((status, (self.directory / "out").exists()))
+        self.assertEqual(statuses, {(3, False), (0, True)})
+
+    @contextlib.contextmanager
+    def small_disk(self, size: int):
+        path = self.directory / "disk"
+        path.mkdir()
+        mount = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(path)]
+        if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+            self.skipTest("mounting takes root; test_limit_of_file_size fails the same writes")
+        try:
+            yield path
+        finally:
+            subprocess.run(["umount", str(path)], check=True)
+            path.rmdir()
+
+    def test_small_disk(self):
+        statuses = set()
+        for size in [4096, 65_536, 200_000, *range(240_000, 700_000, 40_000), 2_000_000]:
+            with self.subTest(size), self.small_disk(size) as disk:
+                status = self.run_on("disk/out")
+                statuses.add((status, (disk / "out").exists(), (disk / "out/signal.svg").exists()))
+        # Nothing, all but the pictures, all.
+        self.assertEqual(statuses, {(3, False, False), (3, True, False), (0, True, True)})
+
+    def test_files_of_an_earlier_run_outlive_it(self):
+        with self.small_disk(1_000_000) as disk:
+            self.assertEqual(self.run_program("report", *MODEL, *QUICK, "--out", "disk/out").returncode, 0)
+            (disk / "filling").write_bytes(bytes(250_000))
+            before = {path.name: path.read_bytes() for path in (disk / "out").iterdir()}
+            self.assertEqual(self.run_on("disk/out"), 3)
+            self.assertEqual({path.name: path.read_bytes() for path in (disk / "out").iterdir()}, before)
+            (disk / "filling").unlink()
+
+
+# What a page holds that its reader sees: the texts of each picture with their places, and the picture's own.
+PLACES = """
+[...document.querySelectorAll('figure svg')].map(svg => {
+  const place = element => { const r = element.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; };
+  const texts = [...svg.querySelectorAll('text')].filter(text => text.textContent.trim() !== '');
+  return {name: svg.getAttribute('aria-label'), role: svg.getAttribute('role'), place: place(svg),
+    texts: texts.map(text => ({words: text.textContent.trim(), place: place(text)}))};
+})
+"""
+
+DEVICES = {
+    "bench": [],
+    "Table 1": TABLE1,
+    "lightly damped": ["--bench-truth", "1.037,4073,0.01"],
+    "lightly damped model": ["--model", "1.037,4073,0.01,0.003,6,0.0001"],
+    "very lightly damped": ["--model", "0.001,40730,0.001,1e-6,1e-3,1e-9"],
+    "heavily damped": ["--bench-truth", "1.037,4073,0.9"],
+    "order 1": [*MODEL, "--order", "1"],
+    "ten milliseconds": [*MODEL, "--time", "0.01"],
+    "without Monte Carlo": ["--model", "1.037,4073,0.3182"],
+    "energy difference": [*MODEL, "--criterion", "difference"],
+    "nearly no uncertainty": ["--model", "1.037,4073,0.3182,1e-9,0,0"],
+    "large numbers": ["--model", "1000,4073,0.3182,3,6,0.0004", "--limit", "12345.678"],
+    "without noise": ["--bench-noise", "0"],
+    "small numbers": ["--points", "small.csv", "--limit", "0.000123456"],
+    "long name": [*MODEL, "--device", "W" * 100],
+}
+
+
+class PageTest(PictureTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = cls.enterClassContext(Browser())
+
+    def open(self, **options):
+        self.browser.open(self.out("report.html"), **options)
+
+
+class PicturesInPage(PageTest, ProgramTest):
+    def write_small_device(self):
+        """Table 1 with a ten thousandth of its amplitudes."""
+        header, *rows = [line.split(",") for line in TABLE1[1].read_text().splitlines() if not line.startswith("#")]
+        for row in rows:
+            row[1], row[3] = f"{1e-4 * float(row[1]):.9g}", f"{1e-4 * float(row[3]):.9g}"
+        self.write([",".join(row) for row in [header, *rows]], "small.csv")
+
+    def test_pictures_are_drawn_and_can_be_read(self):
+        self.write_small_device()
+        for name, arguments in DEVICES.items():
+            trend = [] if "--trend" in arguments else ["--trend", "0.001,0.002,0.003"]
+            self.report(*arguments, "--trials", "2000", *trend)
+            self.open(width=878)  # As wide as a README shows it.
+            pictures = self.browser.evaluate(PLACES)
+            expected = [path for path in self.listed() if path.endswith(".svg")]
+            self.assertEqual(len(pictures), len(expected))
+            self.assertGreaterEqual(len(expected), 3)
+            # gnuplot leaves out what it has no room for.
+            labels = collections.Counter(re.findall(r"set [xy]label '(.+)'", self.content("pictures.gp")))
+            shown = collections.Counter(text["words"] for picture in pictures for text in picture["texts"])
+            self.assertEqual(labels - shown, collections.Counter(), name)
+            for picture in pictures:
+                with self.subTest(name, picture=picture["name"]):
+                    self.assertEqual(picture["role"], "img")
+                    self.assert_readable(picture)
+
+    def assert_readable(self, picture):
+        left, top, right, bottom = picture["place"]
+        self.assertGreater(right - left, 700)
+        self.assertGreater(bottom - top, 300)
+        texts = picture["texts"]
+        self.assertGreater(len(texts), 10)
+        for text in texts:
+            place = text["place"]
+            inside = place[0] >= left and place[1] >= top and place[2] <= right and place[3] <= bottom
+            self.assertTrue(inside, f"clipped: {text['words']}")
+        # The boxes of two lines below one another may touch: they are higher than the letters.
+        for i, first in enumerate(texts):
+            for second in texts[:i]:
+                a, b = first["place"], second["place"]
+                across, down = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+                self.assertFalse(across > 1 and down > 3, f"{first['words']} over {second['words']}")
+
+
+class Page(PageTest, ProgramTest):
+    def assert_clean(self):
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.browser.requests(), [self.out("report.html").as_uri()])
+
+    def test_the_browser_sees_what_is_wrong(self):
+        (self.directory / "out").mkdir()
+        self.out("report.html").write_text(
+            "<img src='http://emax.example/a.png'><script>no_such_function()</script><p style='width:3000px'>x</p>"
+        )
+        self.open()
+        self.assertEqual(self.browser.requests()[1:], ["http://emax.example/a.png"])
+        self.assertTrue(any("no_such_function" in complaint for complaint in self.browser.complaints()))
+        self.assertGreater(self.browser.evaluate("document.documentElement.scrollWidth"), 1000)
+
+    def test_no_complaints_and_no_requests(self):
+        self.report(*TABLE1, *TREND, *options_of(NASTY))
+        self.open()
+        self.assert_clean()
+        self.assertEqual(self.browser.evaluate("document.title"), NASTY["device"] + " - emax report")
+        foreign = self.browser.evaluate("document.querySelectorAll('script, iframe, object, link[href^=http]').length")
+        self.assertEqual(foreign, 0)
+        ids = self.browser.evaluate("[...document.querySelectorAll('[id]')].map(element => element.id)")
+        self.assertEqual(len(ids), len(set(ids)))
+        # References inside the pictures lead to parts of the same picture.
+        broken = self.browser.evaluate("""
+            [...document.querySelectorAll('svg use')].filter(use => {
+              const target = document.querySelector(use.getAttribute('xlink:href'));
+              return target === null || target.ownerSVGElement !== use.ownerSVGElement;
+            }).length""")
+        self.assertEqual(broken, 0)
+
+    def test_says_what_the_report_says(self):
+        paper = [*MODEL, "--method", "paper", *QUICK]
+        for arguments in [["--trials", "1000"], [*TABLE1, *TREND, "--units", "g"], paper]:
+            with self.subTest(arguments):
+                self.report(*arguments)
+                self.open()
+                shown = iter(self.browser.evaluate("document.querySelector('main').textContent").split())
+                report = self.content("report.txt").replace("^2", "²").replace("+-", "±")
+                # Every word in this order, but for headings, which are capitals in the text. Cells touch in a page.
+                words = [word for word in report.split() if not word.isupper() or any(c.isdigit() for c in word)]
+                page = " ".join(shown)
+                at = 0
+                for word in words:
+                    found = page.find(word.strip("()"), at)
+                    self.assertGreaterEqual(found, 0, f"{word} after {page[max(0, at - 80) : at]}")
+                    at = found
+
+    def test_tables_are_tables(self):
+        self.report("--trials", "1000")
+        self.open()
+        tables = self.browser.evaluate(
+            "[...document.querySelectorAll('table.numbers')].map(table => [...table.rows].map(row => row.cells.length))"
+        )
+        self.assertEqual(tables, [[10] * 44, [6] * 4, [3] * 6])
+        figures = self.browser.evaluate(
+            "[...document.querySelectorAll('figure')].map("
+            "figure => [figure.parentElement.id, figure.querySelector('figcaption').textContent.length > 40])"
+        )
+        sections = ["fit", "error-system", "energy", "monte-carlo", "trend"]
+        self.assertEqual(figures, [[section, True] for section in sections])
+
+    def test_headline(self):
+        self.report(*MODEL, *QUICK)
+        results = json.loads(self.content("results.json"))
+        self.open()
+        headline = self.browser.evaluate(
+            "[...document.querySelectorAll('.headline dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
+        )
+        monte_carlo, energy = results["monte_carlo"], results["energy"]
+        self.assertEqual(headline[0], f"{1e3 * monte_carlo['E_max']:.4f} × 10−3 V² s")
+        self.assertEqual(headline[1], f"{1e3 * energy['E']:.4f} × 10−3 V² s")
+        self.assertEqual(headline[2], f"{1e3 * monte_carlo['u']:.4f} × 10−3 V² s")
+        low, high = (f"{1e3 * value:.4f}" for value in monte_carlo["interval"])
+        self.assertEqual(headline[3], f"{low} to {high} × 10−3 V² s")
+        percent = 100 * energy["rms"] / (1.037 * 1.037)
+        self.assertEqual(headline[4], f"{energy['rms']:.5g} V = {percent:.4g} % of S a")
+        self.assertEqual(headline[5], f"{1e3 * energy['bound']:.4f} × 10−3 V² s")
+
+    def test_headline_without_uncertainties(self):
+        self.report("--model", "1.037,4073,0.3182", *QUICK)
+        self.open()
+        headline = self.browser.evaluate("document.querySelector('.headline').textContent.replaceAll('\u00a0', ' ')")
+        # E to the digits that a grid reaches; DESIGN has 0.00511525.
+        self.assertRegex(headline, r"5\.11[45]\d × 10−3 V² s")
+        self.assertIn("all uncertainties are zero", headline)
+
+    def test_warnings_are_seen(self):
+        self.report(*TABLE1, *QUICK)
+        self.open()
+        warnings = self.browser.evaluate("[...document.querySelectorAll('.warning')].map(p => p.innerText)")
+        self.assertEqual(warnings[0], "2 warnings, in: Fit, Monte Carlo")
+        self.assertRegex(warnings[1], r"^WARNING: chi2/dof = 106")
+        self.assertRegex(warnings[2], r"^WARNING: fewer trials")
+        links = self.browser.evaluate(
+            "[...document.querySelectorAll('.warning a')].every(a => document.querySelector(a.getAttribute('href')))"
+        )
+        self.assertTrue(links)
+        self.report(*MODEL, "--trials", "200000", "--trend", "none")
+        self.open()
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.warning').length"), 0)
+        self.assertIn("No warnings", self.browser.evaluate("document.body.innerText"))
+
+    def test_measurement_that_failed(self):
+        result = self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        self.open()
+        self.assert_clean()
+        text = self.browser.evaluate("document.body.innerText")
+        self.assertIn("NOT COMPLETE", text)
+        self.assertIn("no device", text)
+        rows = self.browser.evaluate("document.querySelectorAll('table.numbers tbody tr').length")
+        self.assertEqual(rows, 15)
+
+    def test_narrow_windows(self):
+        self.report("--trials", "1000", "--units", "g", "--note", "n" * 10_000)
+        for width in [360, 700, 1400]:
+            self.open(width=width)
+            self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), width)
+
+    def test_dark(self):
+        self.report(*MODEL, *QUICK)
+        self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        self.addCleanup(self.browser.call, "Emulation.setEmulatedMedia", features=[])
+        self.open()
+        colours = self.browser.evaluate("""
+            [document.body, document.querySelector('.note, .warning'), document.querySelector('figure svg')]
+              .map(e => [getComputedStyle(e).color, getComputedStyle(e).backgroundColor].map(
+                c => c.match(/\\d+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0)))""")
+        for text, paper in colours[:2]:
+            self.assertGreater(text - paper, 255)  # Light on dark, by a third of the range.
+        self.assertEqual(colours[2], [0, 3 * 255])  # The pictures stay black on white.
+
+    def test_print_on_a4(self):
+        self.report("--trials", "1000")
+        self.open()
+        pdf = self.browser.pdf()
+        self.assertIn(len(re.findall(rb"/Type\s*/Page\b", pdf)), range(4, 9))
+        boxes = {tuple(map(float, box.split())) for box in re.findall(rb"/MediaBox\s*\[([^]]*)\]", pdf)}
+        for _, _, width, height in boxes:
+            # A4 in points of 1/72 inch; Chromium rounds to pixels of 1/96 inch.
+            self.assertAlmostEqual(width, 210 / 25.4 * 72, delta=0.75)
+            self.assertAlmostEqual(height, 297 / 25.4 * 72, delta=0.75)
+        break_inside = "getComputedStyle(document.querySelector('figure')).breakInside"
+        self.assertEqual(self.browser.evaluate(break_inside), "auto")
+        self.browser.call("Emulation.setEmulatedMedia", media="print")
+        self.addCleanup(self.browser.call, "Emulation.setEmulatedMedia", media="")
+        self.assertEqual(self.browser.evaluate(break_inside), "avoid")
+
+
+if __name__ == "__main__":
+    main()
