@@ -1,0 +1,51 @@
+// The parts of a Cortex-M processor that every board with one uses.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/board/registers.hpp"
+
+namespace emax::board {
+
+using InterruptHandler = void (*)();
+
+/// Interrupts that a vector table has room for.
+inline constexpr std::size_t kInterrupts = 32;
+
+/// What the processor reads at address 0. The board defines it, in the section .start.
+struct VectorTable {
+  std::uint32_t* stack;
+  InterruptHandler start;
+  InterruptHandler non_maskable;
+  InterruptHandler fault[13];  ///< HardFault to SysTick; this instrument uses none of them.
+  InterruptHandler interrupt[kInterrupts];
+};
+
+extern "C" {
+
+extern const VectorTable vectors;
+extern std::uint32_t stack_top[];
+
+/// Where the processor starts: switches the floating point unit on, before anything could use it,
+/// and then goes to `run_program()`.
+void start();
+
+/// For all vectors without a handler: a fault, or an interrupt that nobody expects. Changes to a
+/// stack of its own, as the other one may be what has failed, reports the fault and stops.
+void on_fault();
+
+/// For the watchdog's interrupt: the same, but the end is a reset that `take_watchdog_reset()` will
+/// tell of.
+void on_watchdog();
+}
+
+/// Lets an interrupt through, and makes one pending by software.
+inline void enable_interrupt(unsigned number) noexcept {
+  reg(0xE000E100 + 4 * (number / 32)) = 1U << (number % 32);
+}
+inline void trigger_interrupt(unsigned number) noexcept {
+  reg(0xE000E200 + 4 * (number / 32)) = 1U << (number % 32);
+}
+
+}  // namespace emax::board

@@ -1,0 +1,42 @@
+// Bytes between the program and the interrupts of a UART.
+#include "emax/board/console_rings.hpp"
+
+#include <limits>
+
+namespace emax::board {
+
+std::size_t ConsoleRings::read(Span<char> bytes) noexcept {
+  std::size_t count = 0;
+  while (count < bytes.size() && receive_.take(bytes[count])) {
+    ++count;
+  }
+  return count;
+}
+
+std::size_t ConsoleRings::write(Span<const char> bytes) noexcept {
+  std::size_t count = 0;
+  while (count < bytes.size() && transmit_.put(bytes[count])) {
+    ++count;
+  }
+  return count;
+}
+
+std::uint32_t ConsoleRings::take_lost_count() noexcept {
+  const std::uint32_t told_count = told_count_.load(std::memory_order_relaxed);
+  const std::uint32_t lost_count = lost_count_.load(std::memory_order_acquire);
+  told_count_.store(lost_count, std::memory_order_release);
+  return lost_count - told_count;
+}
+
+void ConsoleRings::received(char byte) noexcept {
+  if (receive_.put(byte)) {
+    return;
+  }
+  const std::uint32_t lost_count = lost_count_.load(std::memory_order_relaxed);
+  const std::uint32_t untold_count = lost_count - told_count_.load(std::memory_order_acquire);
+  if (untold_count != std::numeric_limits<std::uint32_t>::max()) {
+    lost_count_.store(lost_count + 1, std::memory_order_release);
+  }
+}
+
+}  // namespace emax::board
