@@ -294,8 +294,11 @@ void EnergyTrials::prepare(const MaximumEnergy& best, GridWorkspace& workspace) 
     return;
   }
   ++places_;
-  predicts_ = places_ == kPlaces;
-  ready_ = predicts_;
+  if (places_ == kPlaces) {
+    nearby_.prepare(model_, best.signal);
+    predicts_ = true;
+    ready_ = true;
+  }
 }
 
 /// @returns False if the quadratic does not hold: there is nothing to predict then.
@@ -374,7 +377,7 @@ void EnergyTrials::begin(const Accelerometer& device, const MaximumEnergy& best,
   if (predicts_) {
     const Place place = place_of(device);
     if (place.inside && predict(place.part, best.signal, signal)) {
-      energy_ = emax::energy(model_, signal);
+      energy_ = nearby_.energy(model_, signal, best.signal);
       done_ = true;
       return;
     }

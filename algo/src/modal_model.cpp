@@ -40,7 +40,7 @@ Status ModalModel::set(const Accelerometer& device, const Butterworth& filter,
   count_ = 1 + filter_modes.count;
   fill_gramians(count_);
   fill_sums_over_filter();
-  fill_vectors();
+  fill_switch_weights();
   return Status::kOk;
 }
 
@@ -52,7 +52,7 @@ Status ModalModel::set_device(const Accelerometer& device) noexcept {
   device_ = device;
   modes_[0] = mode_of(device);
   fill_gramians(1);
-  fill_vectors();
+  fill_switch_weights();
   return Status::kOk;
 }
 
@@ -69,21 +69,21 @@ Status ModalModel::set_gain(double gain) noexcept {
     modes_[1 + i].residue = -filter_modes.modes[i].residue;
   }
   fill_sums_over_filter();
-  fill_vectors();
+  fill_switch_weights();
   return Status::kOk;
 }
 
 void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
   const bool difference = criterion_ == Criterion::kEnergyDifference;
   for (std::size_t i = 0; i < first_row_count; ++i) {
+    const Complex pole = modes_[i].pole;
     for (std::size_t j = i; j < count_; ++j) {
       double weight = 1.0;
       if (difference) {
         weight = j == 0 ? 1.0 : (i == 0 ? 0.0 : -1.0);
       }
-      const Complex numerator{weight, 0.0};
-      gramian_[pair(i, j)] = numerator / (modes_[i].pole + modes_[j].pole);
-      conjugate_gramian_[pair(i, j)] = numerator / (modes_[i].pole + conj(modes_[j].pole));
+      gramian_[pair(i, j)] = weight * reciprocal(pole + modes_[j].pole);
+      conjugate_gramian_[pair(i, j)] = weight * reciprocal(pole + conj(modes_[j].pole));
     }
   }
 }
@@ -96,38 +96,62 @@ Complex ModalModel::gramian_row(std::size_t i, const Complex* output) const noex
   return 0.5 * sum;
 }
 
+double ModalModel::gramian_form(const Complex* output) const noexcept {
+  double diagonal = 0.0;
+  double pairs = 0.0;
+  const Complex* g = gramian_;
+  const Complex* h = conjugate_gramian_;
+  for (std::size_t j = 0; j < count_; ++j) {
+    // Re(w_i (G_ij w_j + H_ij conj w_j)), as a real form of the two real and imaginary parts.
+    const Complex w = output[j];
+    double row = 0.0;
+    for (std::size_t i = 0; i < j; ++i, ++g, ++h) {
+      row += output[i].re * ((g->re + h->re) * w.re + (h->im - g->im) * w.im) -
+             output[i].im * ((g->im + h->im) * w.re + (g->re - h->re) * w.im);
+    }
+    pairs += row;
+    diagonal += real_of_product(*g, w * w) + h->re * norm(w);
+    ++g;
+    ++h;
+  }
+  return pairs + 0.5 * diagonal;
+}
+
+Complex ModalModel::correlation(std::size_t i) const noexcept {
+  Complex kernel;
+  for (std::size_t j = 1; j < count_; ++j) {
+    kernel = kernel + gramian(i, j) * modes_[j].residue +
+             conjugate_gramian(i, j) * conj(modes_[j].residue);
+  }
+  kernel = kernel + gramian(i, 0) * modes_[0].residue +
+           conjugate_gramian(i, 0) * conj(modes_[0].residue);
+  return -0.5 * (modes_[i].residue * kernel);
+}
+
 void ModalModel::fill_sums_over_filter() noexcept {
   for (std::size_t i = 1; i < count_; ++i) {
-    inverse_pole_[i] = Complex{1.0, 0.0} / modes_[i].pole;
+    inverse_pole_[i] = reciprocal(modes_[i].pole);
     settled_[i] = modes_[i].residue * inverse_pole_[i];
   }
   for (std::size_t i = 1; i < count_; ++i) {
     filter_settled_[i] = {};
-    filter_kernel_[i] = {};
     for (std::size_t j = 1; j < count_; ++j) {
       filter_settled_[i] = filter_settled_[i] + gramian(i, j) * settled_[j] +
                            conjugate_gramian(i, j) * conj(settled_[j]);
-      filter_kernel_[i] = filter_kernel_[i] + gramian(i, j) * modes_[j].residue +
-                          conjugate_gramian(i, j) * conj(modes_[j].residue);
     }
   }
 }
 
-void ModalModel::fill_vectors() noexcept {
-  inverse_pole_[0] = Complex{1.0, 0.0} / modes_[0].pole;
+void ModalModel::fill_switch_weights() noexcept {
+  inverse_pole_[0] = reciprocal(modes_[0].pole);
   settled_[0] = modes_[0].residue * inverse_pole_[0];
   Complex settled[kMaxModes];
-  Complex kernel[kMaxModes];
+  settled[0] = gramian(0, 0) * settled_[0] + conjugate_gramian(0, 0) * conj(settled_[0]);
   for (std::size_t i = 1; i < count_; ++i) {
-    settled[i] = filter_settled_[i] + gramian(i, 0) * settled_[0] +
-                 conjugate_gramian(i, 0) * conj(settled_[0]);
-    kernel[i] = filter_kernel_[i] + gramian(i, 0) * modes_[0].residue +
-                conjugate_gramian(i, 0) * conj(modes_[0].residue);
-  }
-  settled[0] = 2.0 * gramian_row(0, settled_);
-  for (std::size_t j = 0; j < count_; ++j) {
-    kernel[0] = kernel[0] + gramian(0, j) * modes_[j].residue +
-                conjugate_gramian(0, j) * conj(modes_[j].residue);
+    const Complex g = gramian_[pair(0, i)];
+    const Complex h = conjugate_gramian_[pair(0, i)];
+    settled[0] = settled[0] + g * settled_[i] + h * conj(settled_[i]);
+    settled[i] = filter_settled_[i] + g * settled_[0] + conj(h) * conj(settled_[0]);
   }
   // What a constant unit input ends up as in the output that a mode is part of: y for the
   // integral-square error, ya or minus yf, each with its own sign, for the energy difference.
@@ -139,7 +163,6 @@ void ModalModel::fill_vectors() noexcept {
     const double of_its_part = i == 0 ? device_.sensitivity : filter_.gain;
     const double static_gain = is_difference ? of_its_part : difference;
     switch_weight_[i] = 0.5 * (modes_[i].residue * settled[i]) + static_gain * settled_[i];
-    correlation_[i] = -0.5 * (modes_[i].residue * kernel[i]);
   }
 }
 

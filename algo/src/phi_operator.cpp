@@ -32,12 +32,17 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
     pole_h_[m] = z;
     step_[m] = exp(z);
     end_[m] = mode.residue * width;
-    correlation_[m] = model.correlation(m) * width * width;
-    endless_diagonal_ += 2.0 * h * h * real_of_product(model.correlation(m), phi2(z));
+    const Complex correlation = model.correlation(m);
+    correlation_[m] = correlation * width * width;
+    endless_diagonal_ += 2.0 * h * h * real_of_product(correlation, phi2(z));
     if (m == 0) {
       diagonal_limit_ = endless_diagonal_;
     }
   }
+  // Without a second mode the last one is taken together with one that is nothing.
+  step_[count_] = {};
+  end_[count_] = {};
+  correlation_[count_] = {};
   const bool square = model.criterion() == Criterion::kIntegralSquareError;
   if (square) {
     diagonal_limit_ = endless_diagonal_;
@@ -70,38 +75,47 @@ void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
   }
 }
 
-// All modes at each cell: their recursions are independent, so a processor runs them side by side.
+// Two modes at a time, which with their states and factors fit into the registers of a processor.
 template <typename Signal>
 void PhiOperator::apply(Signal signal, Span<double> product) const noexcept {
-  Complex state[kMaxModes];
   for (std::size_t i = 0; i < cells_; ++i) {
-    const double value = signal[i];
-    double sum = endless_diagonal_ * value;
-    for (std::size_t m = 0; m < count_; ++m) {
-      sum += real_of_product(correlation_[m], state[m]);
-      state[m] = step_[m] * state[m];
-      state[m].re += value;
-    }
-    product[i] = sum;
+    product[i] = endless_diagonal_ * signal[i];
   }
-  Complex at_end[kMaxModes];
-  for (std::size_t m = 0; m < count_; ++m) {
-    at_end[m] = end_[m] * state[m];
+  Complex at_end[kPlaces];
+  for (std::size_t m = 0; m < count_; m += 2) {
+    const Complex step[2] = {step_[m], step_[m + 1]};
+    const Complex correlation[2] = {correlation_[m], correlation_[m + 1]};
+    Complex first;
+    Complex second;
+    for (std::size_t i = 0; i < cells_; ++i) {
+      const double value = signal[i];
+      product[i] = product[i] + real_of_product(correlation[0], first) +
+                   real_of_product(correlation[1], second);
+      first = step[0] * first;
+      second = step[1] * second;
+      first.re += value;
+      second.re += value;
+    }
+    at_end[m] = end_[m] * first;
+    at_end[m + 1] = end_[m + 1] * second;
   }
   // Going back from T, one complex number per mode carries both what comes from later cells and
   // what is missing because the record ends at T.
-  Complex back[kMaxModes];
+  Complex back[kPlaces];
   for (std::size_t m = 0; m < count_; ++m) {
     back[m] = end_[m] * model_->gramian_row(m, at_end);
   }
-  for (std::size_t i = cells_; i-- > 0;) {
-    const double value = signal[i];
-    double sum = product[i];
-    for (std::size_t m = 0; m < count_; ++m) {
-      sum += back[m].re;
-      back[m] = step_[m] * back[m] + value * correlation_[m];
+  for (std::size_t m = 0; m < count_; m += 2) {
+    const Complex step[2] = {step_[m], step_[m + 1]};
+    const Complex correlation[2] = {correlation_[m], correlation_[m + 1]};
+    Complex first = back[m];
+    Complex second = back[m + 1];
+    for (std::size_t i = cells_; i-- > 0;) {
+      const double value = signal[i];
+      product[i] = product[i] + first.re + second.re;
+      first = step[0] * first + value * correlation[0];
+      second = step[1] * second + value * correlation[1];
     }
-    product[i] = sum;
   }
 }
 

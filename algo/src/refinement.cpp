@@ -46,7 +46,8 @@ class EnergyShape {
       rest = rest.from(kMaxSwitches);
     }
     for (std::size_t m = 0; m < modes_.size(); ++m) {
-      self_ += model.correlation(m).re;
+      correlation_[m] = model.correlation(m);
+      self_ += correlation_[m].re;
     }
   }
 
@@ -100,6 +101,7 @@ class EnergyShape {
   Span<double> residual_;
   Span<double> direction_;
   Span<double> image_;
+  Complex correlation_[kMaxModes];
   double self_ = 0.0;  // The autocorrelation of k at distance 0.
   double duration_s_ = 0.0;
   std::size_t count_ = 0;
@@ -130,7 +132,7 @@ double EnergyShape::take(const SwitchingSignal& signal) noexcept {
       set_decay(k, m, factor);
       const Complex shift = sign * model_.inverse_pole(m);
       state[m] = factor * (state[m] + shift) - shift;
-      const Complex term = model_.correlation(m) * state[m];
+      const Complex term = correlation_[m] * state[m];
       value += term.re;
       derivative += real_of_product(modes_[m].pole, term);
       weighted += real_of_product(state[m], model_.switch_weight(m));
@@ -158,7 +160,7 @@ double EnergyShape::take(const SwitchingSignal& signal) noexcept {
     double derivative = slope[k];
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       // b(t_k) = e^(p dt) b(t_(k+1)) + C c (e^(p dt) - 1)/p, c being the sign in between.
-      const Complex shift = sign * (model_.correlation(m) * model_.inverse_pole(m));
+      const Complex shift = sign * (correlation_[m] * model_.inverse_pole(m));
       back[m] = decay(k + 1, m) * (back[m] + shift) - shift;
       value += back[m].re;
       derivative -= real_of_product(modes_[m].pole, back[m]);
@@ -179,7 +181,7 @@ void EnergyShape::apply_between_switches(Span<const double> vector,
     double sum = 0.0;
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       state[m] = decay(k, m) * state[m];
-      sum += real_of_product(model_.correlation(m), state[m]);
+      sum += real_of_product(correlation_[m], state[m]);
     }
     if (k < count_) {
       result[k] = sign * sum + self_ * vector[k];
@@ -200,7 +202,7 @@ void EnergyShape::apply_between_switches(Span<const double> vector,
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       back[m] = decay(k + 1, m) * back[m];
       sum += back[m].re;
-      back[m] = back[m] + (sign * vector[k]) * model_.correlation(m);
+      back[m] = back[m] + (sign * vector[k]) * correlation_[m];
     }
     result[k] += sign * sum;
   }

@@ -4,6 +4,8 @@
 #include "emax/complex_exp.hpp"
 #include "emax/elementary.hpp"
 
+#include "signal_energy.hpp"
+
 namespace emax {
 Status SwitchingSignal::set(Span<const double> times_s, double duration_s) noexcept {
   if (!(duration_s > 0.0) || !is_finite(duration_s)) {
@@ -60,44 +62,24 @@ double SwitchingSignal::value(double time_s) const noexcept {
   return sign;
 }
 
-// With z_i(t) = integral of e^(p_i (t - v)) x(v) dv and x = c since the last switch, the output is
-// y = Re sum w_i + c D, w_i = r_i (z_i + c/p_i). The integral over an interval of the square of
-// Re sum w_i is F(w) at its end minus F(w) at its start, F(w) = Re sum_i w_i gramian_row(i, w);
-// that of 2 c D Re sum w_i is 2 c D Re sum (r_i/p_i) (z_i at the end - z_i at the start). At a
-// switch w jumps from r (z + c/p) to r (z - c/p), and F of the two differs by 4 c Re sum z_i r_i
-// gramian_row(i, r/p). Summed by parts over all intervals there remain 4 c Re sum z_i J_i at each
-// switch, half of that at T, F(r z) at T, and the settled power times T, with J_i = r_i
-// gramian_row(i, r/p) + D r_i/p_i of the model alone.
 double energy(const ModalModel& model, const SwitchingSignal& signal) noexcept {
   return energy(model, signal.times_s(), signal.duration_s());
 }
 
 double energy(const ModalModel& model, Span<const double> times_s, double duration_s) noexcept {
-  const std::size_t count = model.modes().size();
-  Complex state[kMaxModes];  // z
-  double sum = model.static_power() * duration_s;
-  double sign = 1.0;
-  double last_s = 0.0;
-  for (std::size_t k = 0; k <= times_s.size(); ++k) {
-    const bool at_end = k == times_s.size();
-    const double time_s = at_end ? duration_s : times_s[k];
-    double weighted = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Complex shift = sign * model.inverse_pole(i);
-      state[i] = exp((time_s - last_s) * model.modes()[i].pole) * (state[i] + shift) - shift;
-      weighted += real_of_product(state[i], model.switch_weight(i));
-    }
-    sum += (at_end ? 2.0 : 4.0) * sign * weighted;
-    sign = -sign;
-    last_s = time_s;
+  const std::size_t count = times_s.size();
+  SignalEnergy sum(model);
+  for (std::size_t i = 0; i < model.modes().size(); ++i) {
+    const Complex pole = model.modes()[i].pole;
+    double last_s = 0.0;
+    sum.add_mode(i, count + 1, [&](std::size_t k) {
+      const double time_s = k < count ? times_s[k] : duration_s;
+      const double interval_s = time_s - last_s;
+      last_s = time_s;
+      return exp(interval_s * pole);
+    });
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    state[i] = model.modes()[i].residue * state[i];
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    sum += real_of_product(state[i], model.gramian_row(i, state));
-  }
-  return sum;
+  return sum.result(duration_s);
 }
 
 double error_output(const ModalModel& model, const SwitchingSignal& signal,

@@ -10,15 +10,17 @@ constexpr std::uint32_t kMultipliers1982[3] = {171, 172, 170};
 constexpr std::uint32_t kModuli1982[3] = {30269, 30307, 30323};
 
 constexpr unsigned kFoldBits = 31;
-constexpr std::uint64_t kFoldMask = (std::uint64_t{1} << kFoldBits) - 1;
+constexpr std::uint32_t kFoldMask = (std::uint32_t{1} << kFoldBits) - 1;
 
 // a i mod m without a 64-bit division, which small cores do in software: m = 2^31 - c, so 2^31 is c
-// modulo m. With a < 2^16 and c <= 525 one fold leaves less than 2m.
+// modulo m. With a < 2^16 and c <= 525 one fold leaves less than 2m, and fits into 32 bits.
 std::uint32_t multiply_2006(std::uint32_t value, std::size_t j) noexcept {
-  const std::uint64_t complement = (std::uint64_t{1} << kFoldBits) - kModuli2006[j];
+  const std::uint32_t modulus = kModuli2006[j];
+  const std::uint32_t complement = (std::uint32_t{1} << kFoldBits) - modulus;
   const std::uint64_t product = std::uint64_t{kMultipliers2006[j]} * value;
-  const std::uint64_t folded = (product & kFoldMask) + complement * (product >> kFoldBits);
-  return static_cast<std::uint32_t>(folded >= kModuli2006[j] ? folded - kModuli2006[j] : folded);
+  const std::uint32_t folded = (static_cast<std::uint32_t>(product) & kFoldMask) +
+                               complement * static_cast<std::uint32_t>(product >> kFoldBits);
+  return folded >= modulus ? folded - modulus : folded;
 }
 
 std::uint32_t power_times(std::uint32_t multiplier, std::uint64_t exponent, std::uint32_t modulus,

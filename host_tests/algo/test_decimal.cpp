@@ -322,7 +322,8 @@ std::string exact_text(long double value) {
 }
 
 TEST(DecimalParse, ExactMiddlesBetweenNeighbours) {
-  ASSERT_GE(std::numeric_limits<long double>::digits, 54) << "middles need one bit more than double";
+  ASSERT_GE(std::numeric_limits<long double>::digits, 54)
+      << "middles need one bit more than double";
   Random random(8);
   for (int i = 0; i < 30000; ++i) {
     double low = std::fabs(random.finite_pattern());

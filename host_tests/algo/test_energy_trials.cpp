@@ -7,6 +7,7 @@
 #include "emax/refinement.hpp"
 
 #include "support/paper_device.hpp"
+#include "support/rounding.hpp"
 
 namespace emax {
 namespace {
@@ -130,6 +131,11 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
       const double expected = refine(moved, signal, workspace.refinement()).energy;
       // 1e-9 is promised, 1e-10 is seen to at the corners, and inside them it is better.
       ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-10 * std::fabs(expected)) << t;
+      // And it is the energy of the signal that has been predicted.
+      const double of_signal = trials.scale() * energy(trials.model(), workspace.signal());
+      ASSERT_NEAR(trials.energy(), of_signal,
+                  test::rounding_of(moved) + 1e-15 * std::fabs(expected))
+          << t;
     }
   }
 }

@@ -202,6 +202,24 @@ std::uint32_t one_switch(std::size_t cells, std::size_t positive) {
   return all & ~((1u << (positive - 1)) - 1);
 }
 
+TEST(PhiOperator, KeepsNothingOfALargerModel) {
+  // Six modes, then three.
+  const ModalModel large = paper_model();
+  ModalModel small{};
+  ASSERT_EQ(small.set(kPaperDevice, {4, 1000.0, 1.037}, kIse), Status::kOk);
+  PhiOperator reused;
+  PhiOperator fresh;
+  ASSERT_EQ(reused.set(large, 2e-3, 30), Status::kOk);
+  ASSERT_EQ(reused.set(small, 2e-3, 30), Status::kOk);
+  ASSERT_EQ(fresh.set(small, 2e-3, 30), Status::kOk);
+  const std::vector<double> signal(30, 1.0);
+  std::vector<double> of_reused(30);
+  std::vector<double> of_fresh(30);
+  reused.multiply(Span<const double>(signal.data(), signal.size()), span_of(of_reused));
+  fresh.multiply(Span<const double>(signal.data(), signal.size()), span_of(of_fresh));
+  EXPECT_EQ(of_reused, of_fresh);
+}
+
 TEST(PhiEnumeration, LargestEnergyOnTwentyCells) {
   static PhiBuffer<24> phi;
   ASSERT_EQ(phi.fill(paper_model(), 2e-3, 20), Status::kOk);

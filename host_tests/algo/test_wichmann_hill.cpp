@@ -24,7 +24,8 @@ WichmannHill seeded(Generator generator = Generator::k2006) {
   return result;
 }
 
-// By repeated squaring from the top bit: another way than the code's. Base and modulus have 31 bits.
+// By repeated squaring from the top bit: another way than the code's. Base and modulus have 31
+// bits.
 std::uint64_t power(std::uint64_t base, std::uint64_t exponent, std::uint64_t modulus) {
   std::uint64_t result = 1;
   for (int bit = 63; bit >= 0; --bit) {

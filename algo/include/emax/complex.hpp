@@ -25,6 +25,12 @@ constexpr Complex operator/(Complex a, Complex b) noexcept {
   return {(a.re * b.re + a.im * b.im) * scale, (a.im * b.re - a.re * b.im) * scale};
 }
 
+/// 1 / a, with the bits of the quotient.
+constexpr Complex reciprocal(Complex a) noexcept {
+  const double scale = 1.0 / norm(a);
+  return {a.re * scale, -a.im * scale};
+}
+
 /// Re(a b): what is left of a product when only the real part is wanted.
 constexpr double real_of_product(Complex a, Complex b) noexcept {
   return a.re * b.re - a.im * b.im;

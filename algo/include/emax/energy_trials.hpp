@@ -7,6 +7,7 @@
 
 #include "emax/energy_search.hpp"
 #include "emax/modal_model.hpp"
+#include "emax/nearby_energy.hpp"
 #include "emax/status.hpp"
 #include "emax/wichmann_hill.hpp"
 
@@ -46,10 +47,10 @@ struct TrialSettings {
 /// best for its own device. Its switching times are smooth functions of the parameters: `start()`
 /// refines them at ten devices spread over the range and lays a full quadratic through them. Then
 /// it refines at the eight corners. Where the quadratic reaches the refined energy at every corner
-/// to 1e-10 of it, trials use it and cost one exact energy; the times are off by third-order terms,
-/// which at a maximum cost their square. Otherwise, and for the rare draw outside the corners, a
-/// trial is a refinement. With `Method::kPaper` each trial is a whole run of the fixed point from
-/// Phi's first column.
+/// to 1e-10 of it, trials use it and cost one exact energy (`NearbyEnergy`); the times are off by
+/// third-order terms, which at a maximum cost their square. Otherwise, and for the rare draw
+/// outside the corners, a trial is a refinement. With `Method::kPaper` each trial is a whole run of
+/// the fixed point from Phi's first column.
 ///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
 /// estimate's S and multiplied by the square of their ratio.
@@ -60,7 +61,7 @@ struct TrialSettings {
 ///     }
 ///     const double energy = trials.energy(0, best, workspace);
 ///
-/// 7.6 KiB beside the workspace and the signal that is best at the estimate, which must stay as
+/// 9.0 KiB beside the workspace and the signal that is best at the estimate, which must stay as
 /// they are.
 class EnergyTrials {
  public:
@@ -151,6 +152,7 @@ class EnergyTrials {
   void take_node(const SwitchingSignal& best, const SwitchingSignal& refined) noexcept;
 
   ModalModel model_ = {};
+  NearbyEnergy nearby_ = {};
   double terms_[kTerms][kMaxPredicted] = {};
   SearchSettings search_ = {};
   ParameterBox box_ = {};

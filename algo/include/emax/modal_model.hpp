@@ -38,7 +38,7 @@ struct SettlingTime {
 /// modes.
 ///
 /// Mode 0 is the sensor, the others are the filter; the filter's residues carry the minus sign.
-/// About 4 KiB. After `set()`, a new sensor costs one row of the Gramians (`set_device()`).
+/// 2.3 KiB. After `set()`, a new sensor costs one row of the Gramians (`set_device()`).
 class ModalModel {
  public:
   /// Takes over sensor, filter and criterion.
@@ -77,11 +77,14 @@ class ModalModel {
   /// 1/2 sum_j [output_j G_ij + conj(output_j) H_ij], G and H being the two Gramians: what the
   /// outputs of the modes at T still hold, seen from mode i.
   Complex gramian_row(std::size_t i, const Complex* output) const noexcept;
+  /// Re sum_i output_i gramian_row(i, output). By symmetry each two modes are taken once.
+  double gramian_form(const Complex* output) const noexcept;
 
   /// 1/p_i.
   Complex inverse_pole(std::size_t i) const noexcept { return inverse_pole_[i]; }
-  /// The autocorrelation of k at a distance t is Re sum_i correlation(i) e^(p_i t).
-  Complex correlation(std::size_t i) const noexcept { return correlation_[i]; }
+  /// The autocorrelation of k at a distance t is Re sum_i correlation(i) e^(p_i t). Computed in
+  /// each call, by two products per mode.
+  Complex correlation(std::size_t i) const noexcept;
   /// What the state of mode i at a switch is multiplied by in the energy; see `energy()`.
   Complex switch_weight(std::size_t i) const noexcept { return switch_weight_[i]; }
   /// The square of the settled output (or difference of the two squares) for a constant unit input.
@@ -111,7 +114,7 @@ class ModalModel {
   }
   void fill_gramians(std::size_t first_row_count) noexcept;
   void fill_sums_over_filter() noexcept;
-  void fill_vectors() noexcept;
+  void fill_switch_weights() noexcept;
 
   Mode modes_[kMaxModes] = {};
   // Of pairs i <= j: the first is symmetric, the second Hermitian.
@@ -119,11 +122,9 @@ class ModalModel {
   Complex conjugate_gramian_[kPairs] = {};
   Complex inverse_pole_[kMaxModes] = {};
   Complex settled_[kMaxModes] = {};  // r / p
-  Complex correlation_[kMaxModes] = {};
   Complex switch_weight_[kMaxModes] = {};
-  // Parts of the sums over modes that a new sensor does not change.
+  // The part of the sums over modes that a new sensor does not change.
   Complex filter_settled_[kMaxModes] = {};
-  Complex filter_kernel_[kMaxModes] = {};
   double static_power_ = 0.0;
   Accelerometer device_ = {};
   Butterworth filter_ = {};

@@ -67,13 +67,15 @@ class PhiOperator {
  private:
   template <typename Signal>
   void apply(Signal signal, Span<double> product) const noexcept;
+  static constexpr std::size_t kPlaces = kMaxModes + 1;  // One that is nothing follows the modes.
+
   void fill_pulses(std::size_t modes_of_limit) noexcept;
 
   const ModalModel* model_ = nullptr;
-  Complex step_[kMaxModes] = {};         // e^(p h)
-  Complex correlation_[kMaxModes] = {};  // the Toeplitz part at distance d >= 1 is Re sum
-                                         // correlation step^(d - 1)
-  Complex end_[kMaxModes] = {};          // response of the last cell's mode at T
+  Complex step_[kPlaces] = {};         // e^(p h)
+  Complex correlation_[kPlaces] = {};  // the Toeplitz part at distance d >= 1 is Re sum
+                                       // correlation step^(d - 1)
+  Complex end_[kPlaces] = {};          // response of the last cell's mode at T
   Complex pole_h_[kMaxModes] = {};
   double endless_pulse_[kMaxPulse] = {};
   double pulse_limit_[kMaxPulse] = {};
