@@ -293,16 +293,19 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
     return status;
   }
   workspace.share_nothing();
+  vector_ = 0;
+  sweeps_ = 0;
+  checks_ = 0;
+  phase_ = Phase::kFirstVectors;
+  return Status::kOk;
+}
+
+void EnergyBound::fill_vectors(GridWorkspace& workspace) const noexcept {
   WichmannHill random;
   (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kSeed));
   for (double& number : workspace.numbers().first(kRank * cells_)) {
     number = random.next() - 0.5;
   }
-  vector_ = 0;
-  sweeps_ = 0;
-  checks_ = 0;
-  phase_ = Phase::kProposal;
-  return Status::kOk;
 }
 
 double EnergyBound::progress() const noexcept {
@@ -411,6 +414,11 @@ void EnergyBound::next_check(bool passed) noexcept {
 }
 
 Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
+  if (phase_ == Phase::kFirstVectors) {
+    fill_vectors(workspace);
+    phase_ = Phase::kProposal;
+    return Status::kOk;
+  }
   if (phase_ == Phase::kProposal) {
     sweep(model, workspace);
     if (sweeps_ == kSweeps) {

@@ -22,7 +22,7 @@ constexpr double kWorthRefining = 0.01;
 /// Energies that differ by less than this part are of the same signal.
 constexpr double kSame = 1e-11;
 /// What a step of a refinement costs for each switch, in cells of a product.
-constexpr std::size_t kWorkOfRefinement = 32;
+constexpr std::size_t kWorkOfRefinement = 96;
 /// What the energy of a pulse costs, and how much of that is done at once.
 constexpr std::size_t kWorkOfPulse = 12;
 constexpr std::size_t kWorkOfPulses = 512;

@@ -143,8 +143,9 @@ class EnergyBound {
   double multiplier(std::size_t step, GridWorkspace& workspace) const noexcept;
 
  private:
-  enum class Phase : std::uint8_t { kDone, kProposal, kCheck };
+  enum class Phase : std::uint8_t { kDone, kFirstVectors, kProposal, kCheck };
 
+  void fill_vectors(GridWorkspace& workspace) const noexcept;
   void sweep(const ModalModel& model, GridWorkspace& workspace) noexcept;
   void take_proposal(GridWorkspace& workspace) noexcept;
   double shape(std::size_t step, Span<const double> d) const noexcept;

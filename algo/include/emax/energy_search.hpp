@@ -233,7 +233,7 @@ class EnergySearch {
   std::size_t trace_count() const noexcept { return trace_count_; }
 
   /// In cells of products: at the end of a step one product more may have been made.
-  static constexpr std::size_t kWorkPerStep = 1024;
+  static constexpr std::size_t kWorkPerStep = 640;
 
  private:
   enum class Phase : std::uint8_t { kStart, kClimb, kTurn, kRefine };

@@ -581,6 +581,10 @@ void Evaluation::begin_energy(EvaluationWorkspace& workspace) noexcept {
 }
 
 void Evaluation::step_energy(EvaluationWorkspace& workspace) noexcept {
+  if (has_energy_) {
+    go_on(workspace);
+    return;
+  }
   EnergySearch& search = workspace.search_;
   const bool is_paper = settings_.method == Method::kPaper;
   const Status status =
@@ -594,8 +598,7 @@ void Evaluation::step_energy(EvaluationWorkspace& workspace) noexcept {
   }
   maximum_ = search.result();
   trace_count_ = search.trace_count();
-  has_energy_ = true;
-  go_on(workspace);
+  has_energy_ = true;  // What comes next begins with a step of its own.
 }
 
 // A device and time for which no bound passes its check, or for which its grid would be too large,
