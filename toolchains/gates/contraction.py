@@ -12,7 +12,10 @@ import sys
 
 FUNCTION = re.compile(r"[0-9a-f]+ <(.*)>:")
 INSTRUCTION = re.compile(r"\s*[0-9a-f]+:\s+([a-z][\w.]*)")
-FUSED = re.compile(r"vfn?m(add|sub|addsub|subadd)\d+[ps][sdh]|vfn?m[as](\.f\d+)?|fn?m(add|sub)(\.[sdh])?|fml[as]")
+CONDITION = r"(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)?"
+FUSED = re.compile(
+    r"vfn?m(add|sub|addsub|subadd)\d+[ps][sdh]|fn?m(add|sub)(\.[sdh])?|fml[as]" rf"|vfn?m[as]{CONDITION}(\.f\d+)?"
+)
 
 
 def main() -> int:

@@ -38,6 +38,7 @@ SECTIONS = [
 DEFINED = [
     (r"_GLOBAL__(sub_)?[ID]_.*", "code that runs before main"),
     (r"_ZGV.*", "guard of a function-local static"),
+    (r"__emutls_.*", "thread-local storage"),
 ]
 
 FILE_LINE = re.compile(r"File: (.*)")

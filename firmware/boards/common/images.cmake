@@ -21,9 +21,12 @@ function(emax_add_board)
   target_compile_definitions(emax_board PUBLIC EMAX_BOARD_NAME="${EMAX_BOARD}")
   target_link_libraries(emax_board PUBLIC emax_app emax_sim PRIVATE emax_firmware)
 
-  # Time goes by in algo and in the simulated bench; everything else had better be small.
+  # Time goes by in the simulated bench and in the loops of algo; everything else had better be small.
   target_compile_options(emax_app PRIVATE -Os)
   target_compile_options(emax_board PRIVATE -Os)
+  set(seldom absolute_error butterworth decimal frequency_response monte_carlo response_scan trend wlsp)
+  list(TRANSFORM seldom REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/algo/src/\\1.cpp")
+  set_source_files_properties(${seldom} TARGET_DIRECTORY emax_algo PROPERTIES COMPILE_OPTIONS -Os)
 
   add_library(emax_board_test STATIC
     ${common}/semihosting.cpp

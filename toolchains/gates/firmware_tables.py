@@ -1,0 +1,234 @@
+"""Measures what images take and what their work costs, and keeps the two tables of it in firmware/README.md.
+
+usage: firmware_tables.py (--write | --check) --readme README.MD --calls INDIRECT_CALLS.TXT TREE...
+
+A TREE is the build tree of a board; its file images.json says how the board's images are run and read. The costs come
+from the image emax_<board>_cost in an emulator that counts instructions. --write measures everything and rewrites the
+tables. --check measures what takes seconds, and exits with 1 if a number of the tables is off by more than its
+tolerance.
+"""
+
+import argparse
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import footprint
+import tables
+from image import Image
+from run import Board, measured_stack, run_test_image
+from stack import prove
+
+COSTS, FOOTPRINTS, BUDGETS = "costs", tables.FOOTPRINT, "instruction budgets"
+# Counts are exact, and so are sizes; but another release of a compiler makes slightly different code, and not every
+# change of a few instructions is worth a new table. What a reader concludes from a table holds within this.
+COST_TOLERANCE, SIZE_TOLERANCE = 0.10, 0.05
+CLOCK_MHZ = {"mps2_an386": 170, "mps2_an500": 480, "riscv_virt": 480}
+CORES = {"mps2_an386": "Cortex-M4F", "mps2_an500": "Cortex-M7", "riscv_virt": "RV32IMAFDC"}
+
+QUICK_PARTS = ["kernels", "energies-2", "sweep"]
+LONG_PARTS = ["energies-10", "steps-2", "steps-10", "report"]
+# These take the emulator minutes where double precision is computed in software.
+LEFT_OUT = {"mps2_an386": {"steps-10", "report"}}
+
+ROWS = {
+    "sine_fit_sample": "sine fit, one sample of one channel",
+    "sine_fit_result": "sine fit, its result",
+    "sweep_frame": "sweep, one frame: drive, two sine fits, checks",
+    "bench_frame": "simulated bench, one frame",
+    "decimal_format": "17 digits of a number as text",
+    "decimal_parse": "17 digits of text as a number",
+    "phi_fill": "Φ of 128 cells stored",
+    "phi_apply": "Φ applied, T = 2 ms, 98 cells",
+    "iteration": "one fixed-point iteration on these",
+    "phi_apply_paper": "Φ applied, T = 2 ms, 1000 cells (the paper's)",
+    "iteration_paper": "one fixed-point iteration on these",
+    "search.2ms": "E_max, the whole search, T = 2 ms",
+    "bound.2ms": "its bound",
+    "prepare.2ms": "preparation of the trials",
+    "trial.2ms": "one Monte Carlo trial, T = 2 ms",
+    "search.10ms": "E_max, the whole search, T = 10 ms",
+    "bound.10ms": "its bound",
+    "prepare.10ms": "preparation of the trials",
+    "trial.10ms": "one Monte Carlo trial, T = 10 ms",
+    "step_start.2ms": "longest step, T = 2 ms: start, with the fit of 42 points",
+    "step_model.2ms": "error system, peak, settling time, largest absolute error",
+    "step_fit.2ms": "draws of the fit",
+    "step_energy.2ms": "search",
+    "step_bound.2ms": "bound",
+    "step_prediction.2ms": "preparation of the trials",
+    "step_trials.2ms": "trials",
+    "step_guard.2ms": "guard",
+    "step_trend.2ms": "trend",
+    "step_start.10ms": "longest step, T = 10 ms: start, with the fit of 42 points",
+    "step_model.10ms": "error system, peak, settling time, largest absolute error",
+    "step_fit.10ms": "draws of the fit",
+    "step_energy.10ms": "search",
+    "step_bound.10ms": "bound",
+    "step_prediction.10ms": "preparation of the trials",
+    "step_trials.10ms": "trials",
+    "step_guard.10ms": "guard",
+    "step_trend.10ms": "trend",
+    "report": "default evaluation of 42 points without its trials",
+}
+
+
+class Budget(NamedTuple):
+    what: str
+    rows: list[str]  # The largest of these counts.
+    board: str
+    limit: int
+
+
+def instructions(board: str, seconds: float) -> int:
+    return round(seconds * CLOCK_MHZ[board] * 1e6)
+
+
+STEPS = [row for row in ROWS if row.startswith("step_") and row.endswith(".2ms")]
+# What the design asks for. An evaluation must let the console act within 50 ms, and a sweep must keep up with 100000
+# frames per second.
+LIMITS = [
+    Budget("one trial, T = 2 ms", ["trial.2ms"], "mps2_an500", 8000),
+    Budget("the same, stretch", ["trial.2ms"], "mps2_an500", 4000),
+    Budget("one trial, T = 10 ms", ["trial.10ms"], "mps2_an500", 45000),
+    Budget("default evaluation without its trials", ["report"], "mps2_an500", 1_500_000_000),
+    *(Budget("longest step, T = 2 ms: 50 ms", STEPS, board, instructions(board, 50e-3)) for board in CORES),
+    *(Budget("sweep, one frame: 10 µs", ["sweep_frame"], board, instructions(board, 10e-6)) for board in CORES),
+]
+
+
+def measure_costs(board: Board, parts: list[str]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for part in parts:
+        if part in LEFT_OUT.get(board.name, set()):
+            continue
+        output, _ = run_test_image(board, f"emax_{board.name}_cost", [part], counting=True)
+        for line in output.splitlines():
+            name, _, count = line.partition(" ")
+            found[name] = int(count)
+    return found
+
+
+def time_of(instructions: int, mhz: int) -> str:
+    seconds = instructions / (mhz * 1e6)
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)):
+        if seconds >= size:
+            value = seconds / size
+            return f"{value:.3g} {unit}" if value < 999.5 else f"{value:.0f} {unit}"
+    return "0"
+
+
+def cost_table(costs: dict[str, dict[str, int]]) -> str:
+    head = ["what"]
+    for board in costs:
+        head += [CORES[board], f"at {CLOCK_MHZ[board]} MHz"]
+    lines = [head, ["---", *["---:"] * (len(head) - 1)]]
+    for row, title in ROWS.items():
+        cells = [title]
+        for board, found in costs.items():
+            known = row in found
+            cells += [tables.grouped(found[row]), time_of(found[row], CLOCK_MHZ[board])] if known else ["-", "-"]
+        lines.append(cells)
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def budget_table(costs: dict[str, dict[str, int]]) -> str:
+    lines = ["| what | core | budget | used | |", "|---|---|---:|---:|---|"]
+    for budget in LIMITS:
+        used = max(costs[budget.board][row] for row in budget.rows)
+        verdict = "met" if used <= budget.limit else "**not met**"
+        numbers = f"{tables.grouped(budget.limit)} | {tables.grouped(used)}"
+        lines.append(f"| {budget.what} | {CORES[budget.board]} | {numbers} | {verdict} |")
+    return "\n".join(lines)
+
+
+def measure_sizes(boards: list[Board], calls: str) -> dict[str, dict[str, "int | None"]]:
+    found: dict[str, dict[str, "int | None"]] = {}
+    for board in boards:
+        for image in board.images:
+            linked = Image(board.path(image))
+            proof = prove(linked, board.objdump, board.images[image], calls)
+            found[image] = {
+                **footprint.used(linked),
+                "proven": proof.bytes,
+                "measured": measured_stack(board, image),
+            }
+    return found
+
+
+def size_table(sizes: dict[str, dict[str, "int | None"]]) -> str:
+    lines = ["| image | flash | RAM without stack | stack proven | stack measured |", "|---|---:|---:|---:|---:|"]
+    for image, found in sizes.items():
+        cells = [tables.grouped(value) if value is not None else "-" for value in found.values()]
+        lines.append(f"| `{image}` | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def compare(title: str, fresh: "int | None", cell: str, tolerance: float) -> list[str]:
+    recorded = tables.number(cell)
+    if fresh is None and recorded is None:
+        return []
+    if fresh is None or recorded is None or abs(fresh - recorded) > tolerance * recorded:
+        return [f"{title}: {fresh} now, and {cell or 'nothing'} in the table"]
+    return []
+
+
+def check_costs(readme: str, costs: dict[str, dict[str, int]]) -> list[str]:
+    complaints = []
+    recorded = tables.rows(readme, COSTS)
+    titles = [cells[0] for cells in recorded]
+    if titles != list(ROWS.values()):
+        return [f"the rows are other ones than {', '.join(ROWS.values())}"]
+    for row, cells in zip(ROWS, recorded):
+        for at, (board, found) in enumerate(costs.items()):
+            if row in found:
+                complaints += compare(f"{CORES[board]}, {row}", found[row], cells[1 + 2 * at], COST_TOLERANCE)
+    return complaints
+
+
+def check_sizes(readme: str, sizes: dict[str, dict[str, "int | None"]]) -> list[str]:
+    recorded = {cells[0].strip("`"): cells[1:] for cells in tables.rows(readme, FOOTPRINTS)}
+    if list(recorded) != list(sizes):
+        return [f"the images are {', '.join(sizes)}, and those of the table {', '.join(recorded)}"]
+    return [
+        complaint
+        for image, found in sizes.items()
+        for (what, value), cell in zip(found.items(), recorded[image])
+        for complaint in compare(f"{image}, {what}", value, cell, SIZE_TOLERANCE)
+    ]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    action = parser.add_mutually_exclusive_group(required=True)
+    action.add_argument("--write", action="store_true")
+    action.add_argument("--check", action="store_true")
+    parser.add_argument("--readme", required=True)
+    parser.add_argument("--calls", required=True)
+    parser.add_argument("trees", nargs="+", metavar="TREE")
+    arguments = parser.parse_args()
+
+    boards = [Board.read(tree) for tree in arguments.trees]
+    parts = QUICK_PARTS + (LONG_PARTS if arguments.write else [])
+    with ThreadPoolExecutor(2) as pool:
+        found = pool.map(lambda board: measure_costs(board, parts), boards)
+        costs = {board.name: cost for board, cost in zip(boards, found)}
+    sizes = measure_sizes(boards, arguments.calls)
+    if arguments.write:
+        tables.replace(arguments.readme, COSTS, cost_table(costs))
+        tables.replace(arguments.readme, BUDGETS, budget_table(costs))
+        tables.replace(arguments.readme, FOOTPRINTS, size_table(sizes))
+        print(f"{arguments.readme}: tables written")
+        return 0
+    complaints = check_costs(arguments.readme, costs) + check_sizes(arguments.readme, sizes)
+    for complaint in complaints:
+        print(complaint)
+    if complaints:
+        print("if that is as it should be: cmake --build build/check --target cost_table")
+    compared = sum(map(len, costs.values())) + sum(map(len, sizes.values()))
+    print(f"{compared} numbers compared, {len(complaints)} off")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
