@@ -1,0 +1,105 @@
+// Evaluations step by step, as the instrument runs them.
+#include <array>
+
+#include "emax/accelerometer.hpp"
+#include "emax/app/evaluation.hpp"
+#include "emax/app/settings.hpp"
+#include "emax/app/sweep_settings.hpp"
+#include "emax/frequency_response.hpp"
+
+#include "instruction_counter.hpp"
+#include "memory.hpp"
+#include "rows.hpp"
+
+namespace emax::cost {
+namespace {
+
+constexpr std::size_t kStages = static_cast<std::size_t>(app::Stage::kFailed) + 1;
+constexpr std::uint32_t kTrials = 1000;
+constexpr double kRelativeU = 0.003;
+constexpr double kPhaseU_rad = 0.01;
+
+struct StageCost {
+  Ticks sum = 0;
+  Ticks longest = 0;
+};
+using StageCosts = std::array<StageCost, kStages>;
+
+/// Points of the device itself, at the frequencies of a default sweep.
+Status fill(FrequencyResponse& points) noexcept {
+  const app::SweepSettings defaults;
+  for (std::size_t i = 0; i < defaults.frequency_count; ++i) {
+    const double frequency_hz = defaults.frequency_hz[i];
+    const double k = amplitude(kDevice, frequency_hz);
+    const Status status = points.add(
+        {frequency_hz, k, phase_rad(kDevice, frequency_hz), kRelativeU * k, kPhaseU_rad});
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
+  return points.set_common(kRelativeU);
+}
+
+Status run(const app::Settings& settings, Evaluations& work, StageCosts& costs) noexcept {
+  Status status = fill(work.points);
+  if (status != Status::kOk) {
+    return status;
+  }
+  StageCost& start = costs[static_cast<std::size_t>(app::Stage::kIdle)];
+  start.sum = ticks_of(
+      [&] { status = work.evaluation.start_from_points(work.points, settings, work.workspace); });
+  start.longest = start.sum;
+  while (status == Status::kOk && !work.evaluation.done()) {
+    StageCost& cost = costs[static_cast<std::size_t>(work.evaluation.stage())];
+    const Ticks ticks = ticks_of([&] { work.evaluation.step(work.workspace); });
+    cost.sum += ticks;
+    cost.longest = ticks > cost.longest ? ticks : cost.longest;
+  }
+  return status == Status::kOk ? work.evaluation.status() : status;
+}
+
+}  // namespace
+
+Status count_steps(std::uint32_t duration_ms, Rows& rows) noexcept {
+  struct Name {
+    app::Stage stage;
+    const char* text;
+  };
+  constexpr Name kNames[] = {
+      {app::Stage::kIdle, "step_start"},        {app::Stage::kModel, "step_model"},
+      {app::Stage::kFitDraws, "step_fit"},      {app::Stage::kEnergy, "step_energy"},
+      {app::Stage::kBound, "step_bound"},       {app::Stage::kPrediction, "step_prediction"},
+      {app::Stage::kMonteCarlo, "step_trials"}, {app::Stage::kGuard, "step_guard"},
+      {app::Stage::kTrend, "step_trend"},
+  };
+  Evaluations& work = memory().evaluations.make();
+  app::Settings settings;
+  settings.duration_s = static_cast<double>(duration_ms) / 1000.0;
+  settings.trials = kTrials;
+  settings.trend_s = {0.5 * settings.duration_s, settings.duration_s};
+  settings.trend_count = 2;
+  StageCosts costs = {};
+  const Status status = run(settings, work, costs);
+  for (const Name& name : kNames) {
+    rows.add(name.text, duration_ms,
+             instructions_of(costs[static_cast<std::size_t>(name.stage)].longest));
+  }
+  return status;
+}
+
+Status count_report(Rows& rows) noexcept {
+  Evaluations& work = memory().evaluations.make();
+  app::Settings settings;
+  settings.trials = kTrials;
+  StageCosts costs = {};
+  const Status status = run(settings, work, costs);
+  Ticks sum = 0;
+  for (const StageCost& cost : costs) {
+    sum += cost.sum;
+  }
+  const StageCost& trials = costs[static_cast<std::size_t>(app::Stage::kMonteCarlo)];
+  rows.add("report", instructions_of(sum - trials.sum));
+  return status;
+}
+
+}  // namespace emax::cost

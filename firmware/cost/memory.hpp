@@ -1,0 +1,67 @@
+// One piece of memory for what is counted one after the other.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/app/evaluation.hpp"
+#include "emax/app/in_place.hpp"
+#include "emax/app/sweep.hpp"
+#include "emax/energy_bound.hpp"
+#include "emax/energy_search.hpp"
+#include "emax/energy_trials.hpp"
+#include "emax/frequency_response.hpp"
+#include "emax/phi_buffer.hpp"
+#include "emax/phi_operator.hpp"
+#include "emax/signs.hpp"
+#include "emax/sine_fit.hpp"
+
+namespace emax::cost {
+
+inline constexpr std::size_t kStoredCells = 128;
+/// The paper's cells of 2 us in 2 ms.
+inline constexpr std::size_t kPaperCells = 1000;
+
+struct Kernels {
+  ModalModel model;
+  SineFit fit;
+  PhiBuffer<kStoredCells> stored_phi;
+  PhiOperator phi;
+  std::array<std::uint32_t, sign_words(kPaperCells)> signs = {};
+  std::array<std::uint32_t, sign_words(kPaperCells)> best_signs = {};
+  std::array<double, kPaperCells> product = {};
+};
+
+struct Energies {
+  ModalModel model;
+  EnergySearch search;
+  EnergyBound bound;
+  EnergyTrials trials;
+  GridWorkspace grid;
+};
+
+struct Evaluations {
+  FrequencyResponse points;
+  app::Evaluation evaluation;
+  app::EvaluationWorkspace workspace;
+};
+
+struct Sweeps {
+  app::Sweep sweep;
+  app::SweepWorkspace workspace;
+};
+
+union Memory {
+  constexpr Memory() noexcept : none{} {}
+
+  char none;
+  app::InPlace<Kernels> kernels;
+  app::InPlace<Energies> energies;
+  app::InPlace<Evaluations> evaluations;
+  app::InPlace<Sweeps> sweeps;
+};
+
+Memory& memory() noexcept;
+
+}  // namespace emax::cost
