@@ -3,7 +3,10 @@
 enable_testing()
 include(${CMAKE_CURRENT_LIST_DIR}/python.cmake)
 
-set(configurations host host-clang host-sanitize host-gcc-O0 host-gcc-native)
+set(compared host host-clang host-sanitize host-gcc-O0 host-gcc-native)
+set(cross
+  cortex-m0plus cortex-m3 cortex-m4f cortex-m7 cortex-m33 cortex-m55 cortex-m4f-clang cortex-m7-clang rv32)
+set(configurations ${compared} fuzz ${cross})
 
 set(subtrees "")
 set(programs "")
@@ -20,7 +23,9 @@ foreach(configuration IN LISTS configurations)
   endif()
   set(previous ${configuration})
   string(APPEND subtrees "subdirs(\"${tree}\")\n")
-  list(APPEND programs ${configuration}=${tree}/emax)
+endforeach()
+foreach(configuration IN LISTS compared)
+  list(APPEND programs ${configuration}=${PROJECT_SOURCE_DIR}/build/${configuration}/emax)
 endforeach()
 file(WRITE ${PROJECT_BINARY_DIR}/configurations.cmake "${subtrees}")
 set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${PROJECT_BINARY_DIR}/configurations.cmake)
@@ -57,7 +62,9 @@ file(GLOB_RECURSE formatted ${header_patterns} ${source_patterns})
 add_test(NAME style.format COMMAND ${EMAX_CLANG_FORMAT} --dry-run --Werror ${formatted})
 add_custom_target(format COMMAND ${EMAX_CLANG_FORMAT} -i ${formatted} COMMENT "Formats all sources in place")
 
-file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR} algo/src/*.cpp firmware/app/src/*.cpp firmware/boards/host/*.cpp)
+file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
+  algo/src/*.cpp hal/src/*.cpp hal/sim/src/*.cpp
+  firmware/app/src/*.cpp firmware/app/src/scpi/*.cpp firmware/boards/host/*.cpp)
 foreach(source IN LISTS tidied)
   add_test(NAME style.tidy.${source}
     COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-clang ${PROJECT_SOURCE_DIR}/${source})
@@ -65,3 +72,7 @@ endforeach()
 
 get_property(tests DIRECTORY PROPERTY TESTS)
 set_tests_properties(${tests} PROPERTIES TIMEOUT 240)
+
+include(${CMAKE_CURRENT_LIST_DIR}/check_firmware.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/check_targets.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/check_clients.cmake)

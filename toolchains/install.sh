@@ -4,17 +4,21 @@ set -eu
 
 usage() {
   cat <<'TEXT'
-usage: toolchains/install.sh [host]
+usage: toolchains/install.sh [host | target]
 
-  host   what builds and runs the program on this PC
-  none   that, and everything the tests of all configurations need
+  host     what builds and runs the program on this PC
+  target   that, and what builds the firmware and runs it in an emulator
+  none     that, and everything the tests of all configurations need
 
 Installs only what is missing; with nothing missing it needs neither root nor a network.
 TEXT
 }
 
-build_packages='cmake g++ ninja-build'
-check_packages='clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev python3 python3-numpy'
+build_packages='cmake g++ gnuplot-nox ninja-build'
+target_packages="gcc-arm-none-eabi gcc-riscv64-unknown-elf googletest libnewlib-arm-none-eabi \
+libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-numpy qemu-system-arm qemu-system-misc"
+check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev \
+python3-pyvisa python3-pyvisa-py"
 
 if [ $# -gt 1 ]; then
   usage >&2
@@ -22,7 +26,8 @@ if [ $# -gt 1 ]; then
 fi
 case "${1-all}" in
   host) wanted=$build_packages ;;
-  all) wanted="$build_packages $check_packages" ;;
+  target) wanted="$build_packages $target_packages" ;;
+  all) wanted="$build_packages $target_packages $check_packages" ;;
   -h | --help)
     usage
     exit 0

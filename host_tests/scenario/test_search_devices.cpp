@@ -17,6 +17,8 @@
 #include "emax/energy_bound.hpp"
 #include "emax/energy_search.hpp"
 
+#include "support/sign_pattern.hpp"
+
 namespace emax {
 namespace {
 
@@ -89,9 +91,9 @@ class FlipSearch {
   double run(std::size_t starts) {
     std::mt19937_64 random(5);
     for (std::size_t start = 0; start < starts; ++start) {
-      std::vector<std::int8_t> x(cells_);
-      for (std::int8_t& sign : x) {
-        sign = random() % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
+      std::vector<int> x(cells_);
+      for (int& sign : x) {
+        sign = random() % 2 == 0 ? 1 : -1;
       }
       const double energy = climb(x);
       keep(energy, x);
@@ -99,8 +101,7 @@ class FlipSearch {
     double best = 0.0;
     for (const End& end : ends_) {
       SwitchingSignal signal{};
-      if (signal.set_signs(Span<const std::int8_t>(end.signs.data(), cells_), duration_s_) ==
-          Status::kOk) {
+      if (signal.set_signs(test::SignPattern(end.signs).view(), duration_s_) == Status::kOk) {
         best = std::max(best, refine(model_, signal, Span<double>(refinement_memory)).energy);
       }
       best = std::max(best, end.energy);
@@ -111,10 +112,10 @@ class FlipSearch {
  private:
   struct End {
     double energy;
-    std::vector<std::int8_t> signs;
+    std::vector<int> signs;
   };
 
-  double climb(std::vector<std::int8_t>& x) const {
+  double climb(std::vector<int>& x) const {
     std::vector<double> y(cells_, 0.0);
     for (std::size_t i = 0; i < cells_; ++i) {
       add_row(i, x[i], y);
@@ -125,7 +126,7 @@ class FlipSearch {
         // Gains of rounding would go on for ever.
         if (full_[i * cells_ + i] * (1.0 - 1e-12) > x[i] * y[i]) {
           add_row(i, -2.0 * x[i], y);
-          x[i] = static_cast<std::int8_t>(-x[i]);
+          x[i] = -x[i];
           moved = true;
         }
       }
@@ -144,7 +145,7 @@ class FlipSearch {
     }
   }
 
-  void keep(double energy, const std::vector<std::int8_t>& signs) {
+  void keep(double energy, const std::vector<int>& signs) {
     for (const End& end : ends_) {
       if (std::fabs(end.energy - energy) < 1e-10 * energy) {
         return;
@@ -181,7 +182,7 @@ TEST(SearchDevices, AreAtMostATenthOfAPercentBelowManyRandomStarts) {
     ASSERT_EQ(model.set(c.device, c.filter, Criterion::kIntegralSquareError), Status::kOk);
     SearchSettings settings;
     settings.duration_s = c.duration_s;
-    ASSERT_EQ(search.start(model, settings, workspace), Status::kOk);
+    ASSERT_EQ(search.start(model, settings), Status::kOk);
     while (!search.done()) {
       ASSERT_EQ(search.step(model, workspace), Status::kOk);
     }

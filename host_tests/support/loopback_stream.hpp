@@ -101,8 +101,7 @@ class Loopback {
       return static_cast<std::size_t>(index % line_.size());
     };
     line_[slot(index_)] = word;
-    const hal::Word delayed =
-        index_ < latency_frames_ ? 0 : line_[slot(index_ - latency_frames_)];
+    const hal::Word delayed = index_ < latency_frames_ ? 0 : line_[slot(index_ - latency_frames_)];
     ++index_;
     const std::int64_t unused = std::int64_t{1} << (32U - kLoopbackInputBits);
     const std::int64_t converted = delayed - ((delayed % unused) + unused) % unused;

@@ -1,0 +1,5 @@
+# Cortex-M4F with gcc: floating point in single precision, double in software.
+
+set(CMAKE_SYSTEM_PROCESSOR cortex-m4f)
+set(EMAX_CORE_FLAGS "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard")
+include(${CMAKE_CURRENT_LIST_DIR}/arm_gcc.cmake)

@@ -1,0 +1,5 @@
+# Cortex-M7 with clang: floating point in double precision.
+
+set(CMAKE_SYSTEM_PROCESSOR cortex-m7)
+set(EMAX_CORE_FLAGS "-mcpu=cortex-m7 -mthumb -mfpu=fpv5-d16 -mfloat-abi=hard")
+include(${CMAKE_CURRENT_LIST_DIR}/arm_clang.cmake)
