@@ -22,6 +22,13 @@ const char* const emax_tests_left_out = "@left_out@";
 ]] @ONLY)
   target_sources(${name} PRIVATE ${source})
 
+  # Where nothing would run, only slow_tests builds the image.
+  get_property(slow GLOBAL PROPERTY EMAX_SLOW_PROGRAMS)
+  if(name IN_LIST slow)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    return()
+  endif()
+
   # Its console is semihosting, and a terminal is not touched.
   set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${EMAX_MACHINE};-serial;null;-kernel")
   add_test(NAME ${EMAX_CONFIGURATION}.${name} COMMAND ${name} ${ARGN})
