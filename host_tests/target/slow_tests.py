@@ -4,7 +4,7 @@ usage: slow_tests.py LIST SECONDS LEFT_OUT EMULATOR... -- IMAGE...
 
 LEFT_OUT is a file with the names of the tests that do not run for other reasons, one a line. A
 time is what QEMU takes of a processor of this PC, so it matters little what else runs. A test that
-takes four times SECONDS is ended. What LIST says of other images stays.
+takes twice SECONDS is ended. What LIST says of other images stays.
 """
 
 import os
@@ -31,7 +31,7 @@ def main() -> int:
     lines = [line for line in old if line.split()[0] not in measured]
     total_s = 0.0
     for image in images:
-        seconds = measure(emulator, image, left_out, 4 * limit_s)
+        seconds = measure(emulator, image, left_out, 2 * limit_s)
         slow = {test: s for test, s in seconds.items() if s > limit_s}
         kept_s = sum(seconds.values()) - sum(slow.values())
         total_s += kept_s
@@ -39,7 +39,7 @@ def main() -> int:
         if len(slow) == len(seconds):
             lines.append(f"{Path(image).name} *")
         for test, s in slow.items():
-            lines.append(f"{Path(image).name} {test} {'more than ' if s >= 4 * limit_s else ''}{s:.1f} s")
+            lines.append(f"{Path(image).name} {test} {'more than ' if s >= 2 * limit_s else ''}{s:.1f} s")
     list_file.write_text(
         f"Tests that do not run on the emulated core, since they take more than {limit_s:g} s of a PC's processor there.\n"
         "Written by the target slow_tests.\n\n" + "".join(line + "\n" for line in sorted(lines))
