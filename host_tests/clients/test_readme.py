@@ -1,8 +1,9 @@
 """The examples of the README, run as they stand there, print what stands there.
 
-usage: test_readme.py PROGRAM README
+usage: test_readme.py PROGRAM PROJECT_DIRECTORY
 """
 
+import json
 import os
 import pathlib
 import re
@@ -10,14 +11,60 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 from instruments import HostProgram
 
-PROGRAM, README = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).read_text()
+PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+README = (PROJECT / "README.md").read_text()
+SHOWN = PROJECT / "firmware/boards/host/pictures"
 ADDRESS = "TCPIP::127.0.0.1::5025::SOCKET"
 
 
+def texts_of(picture: pathlib.Path) -> list[str]:
+    """The words in a picture."""
+    root = xml.etree.ElementTree.parse(picture).getroot()
+    return ["".join(text.itertext()).strip() for text in root.iter("{http://www.w3.org/2000/svg}text")]
+
+
 class ReadmeTest(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = pathlib.Path(directory.name)
+
+    def run_line(self, command: str) -> subprocess.CompletedProcess:
+        """A command of the README, run as if beside it, in an empty directory."""
+        line = command.replace("build/host/emax", f"'{PROGRAM}'").replace("host_tests/", f"'{PROJECT}'/host_tests/")
+        self.assertIn(PROGRAM, line)
+        return subprocess.run(line, shell=True, cwd=self.directory, capture_output=True, text=True, timeout=100)
+
+    def print_of(self, command: str) -> str:
+        result = self.run_line(command)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return result.stdout
+
+    def block_after(self, words: str) -> str:
+        """The first block after these words."""
+        self.assertEqual(README.count(words), 1, words)
+        return re.search(r"^```\n((?:.*\n)*?)```$", README.split(words)[1], re.MULTILINE)[1]
+
+    def assert_excerpt(self, excerpt: str, printed: str) -> None:
+        """Each paragraph of the excerpt stands in what was printed, in this order; `...` leaves lines out."""
+        place = 0
+        for part in re.split(r"\n\n|^ *\.\.\.\n", excerpt, flags=re.MULTILINE):
+            lines = part.strip("\n") + "\n"
+            found = printed.find("\n" + lines, max(place - 1, 0))
+            self.assertNotEqual(found, -1, lines)
+            place = found + 1 + len(lines)
+
+    def assert_shown(self, picture: str, drawn: pathlib.Path) -> None:
+        self.assertIn(f"({SHOWN.relative_to(PROJECT)}/{picture})", README)
+        self.assertEqual(texts_of(SHOWN / picture), texts_of(drawn))
+        shown, fresh = [path.read_text(encoding="utf-8") for path in [SHOWN / picture, drawn]]
+        if re.search("<desc>.*</desc>", shown)[0] == re.search("<desc>.*</desc>", fresh)[0]:
+            self.assertEqual(shown, fresh)  # Another gnuplot may set its lines elsewhere.
+
     def session(self, start: str) -> tuple[str, str]:
         """The one block that shows a command with that start: the command, and what it prints."""
         found = re.findall(rf"^```\n\$ ({re.escape(start)}.*)\n((?:.*\n)*?)```$", README, re.MULTILINE)
@@ -26,10 +73,40 @@ class ReadmeTest(unittest.TestCase):
 
     def test_by_hand(self):
         command, printed = self.session("printf ")
-        line = command.replace("build/host/emax", f"'{PROGRAM}'")
-        self.assertNotEqual(line, command)
-        result = subprocess.run(line, shell=True, check=True, stdout=subprocess.PIPE, timeout=60)
-        self.assertEqual(result.stdout.decode(), printed)
+        self.assertEqual(self.print_of(command), printed)
+
+    def test_report_and_its_pictures(self):
+        printed = self.print_of("build/host/emax report --out results")
+        self.assert_excerpt(self.block_after("(shortened):"), printed)
+        drawn = sorted(path.name for path in (self.directory / "results").glob("*.svg"))
+        self.assertEqual(len(drawn), 5)
+        self.assertEqual(sorted(path.name for path in SHOWN.iterdir()), sorted(["comparison.svg", *drawn]))
+        for picture in drawn:
+            self.assert_shown(picture, self.directory / "results" / picture)
+
+    def test_report_of_poor_data(self):
+        command = "build/host/emax report --points host_tests/data/djb_a1800v.csv"
+        self.assert_excerpt(self.block_after(f"`{command}`. Poor\ndata get a plain warning:"), self.print_of(command))
+
+    def test_energy_of_each_order(self):
+        start = "build/host/emax report --model 1.037,4073,0.3182 --trend none --order"
+        table = README.split(f"`{start} L`:")[1].split("\n\n")[1].splitlines()
+        orders, energies, switches = [[cell.strip() for cell in table[row].split("|")[2:-1]] for row in [0, 2, 3]]
+        self.assertEqual(orders, [str(order) for order in range(1, 16)])
+        for order, energy, count in zip(orders, energies, switches, strict=True):
+            with self.subTest(order=order):
+                result = json.loads(self.print_of(f"{start} {order} --json"))["energy"]
+                self.assertEqual((f"{1e3 * result['E']:.3f}", str(len(result["switch_times"]))), (energy, count))
+
+    def test_fault(self):
+        command, printed = self.session("build/host/emax report --bench-fault ")
+        result = self.run_line(command)
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (3, "", printed))
+
+    def test_tour(self):
+        printed = self.print_of(self.block_after("so give one `--limit` to all:"))
+        self.assertEqual(printed, self.block_after("--out comparison\n```\n\nprints\n"))
+        self.assert_shown("comparison.svg", self.directory / "comparison/comparison.svg")
 
     def test_pyvisa(self):
         command, printed = self.session("python3 example.py ")
@@ -39,12 +116,11 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual(scripts[0].count("\n"), 10, "ten lines")
         instrument = HostProgram(PROGRAM)
         self.addCleanup(instrument.close)
-        with tempfile.TemporaryDirectory() as directory:
-            script = pathlib.Path(directory) / "example.py"
-            script.write_text(scripts[0])
-            address = ADDRESS.replace("5025", str(instrument.port))
-            result = subprocess.run([sys.executable, "-W", "ignore", script, address], check=True,
-                                    stdout=subprocess.PIPE, timeout=100)
+        script = self.directory / "example.py"
+        script.write_text(scripts[0])
+        address = ADDRESS.replace("5025", str(instrument.port))
+        result = subprocess.run([sys.executable, "-W", "ignore", script, address], check=True,
+                                stdout=subprocess.PIPE, timeout=100)
         self.assertEqual(result.stdout.decode(), printed)
 
 

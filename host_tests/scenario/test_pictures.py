@@ -219,17 +219,6 @@ class Pictures(PictureTest, ProgramTest):
                 references = set(re.findall(r"""href=['"]([^'"]*)""", svg))
                 self.assertTrue(all(address.startswith("#") for address in references), references)
 
-    def test_readme_shows_what_the_program_draws(self):
-        self.report()
-        shown = DATA.parent.parent / "firmware/boards/host/pictures"
-        self.assertEqual(sorted(path.name for path in shown.iterdir()), [f"{name}.svg" for name in PICTURES])
-        for name in PICTURES:
-            self.assertEqual(texts_of(shown / f"{name}.svg"), texts_of(self.out(f"{name}.svg")))
-            version = [re.search(r"<desc>.*</desc>", text)[0] for text in
-                       [self.content(f"{name}.svg"), (shown / f"{name}.svg").read_text(encoding="utf-8")]]  # fmt: skip
-            if version[0] == version[1]:  # Another gnuplot may set its lines elsewhere.
-                self.assertEqual(self.content(f"{name}.svg"), (shown / f"{name}.svg").read_text(encoding="utf-8"))
-
     def test_script_gives_the_same_again(self):
         self.report(*TREND, "--device", NASTY["device"])
         before = {name: self.content(f"{name}.svg") for name in PICTURES}
