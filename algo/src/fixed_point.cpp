@@ -19,8 +19,11 @@ bool take_signs(Span<const double> product, double shift, Signs signs) noexcept 
 
 double dot(Signs signs, Span<const double> product) noexcept {
   double sum = 0.0;
-  for (std::size_t i = 0; i < signs.size(); ++i) {
-    sum += signs.is_positive(i) ? product[i] : -product[i];
+  for (std::size_t i = 0; i < signs.size();) {
+    const double sign = signs[i];
+    for (const std::size_t end = signs.run_end(i); i < end; ++i) {
+      sum += sign * product[i];
+    }
   }
   return sum;
 }

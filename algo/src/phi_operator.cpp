@@ -62,11 +62,13 @@ void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
   double rise_of_limit = diagonal_limit_;
   double energy = 0.0;
   double limit = 0.0;
+  greatest_pulse_limit_ = 0.0;
   for (std::size_t width = 1; width <= kMaxPulse; ++width) {
     energy += rise;
     limit += rise_of_limit;
     endless_pulse_[width - 1] = energy;
     pulse_limit_[width - 1] = limit;
+    greatest_pulse_limit_ = limit > greatest_pulse_limit_ ? limit : greatest_pulse_limit_;
     for (std::size_t m = 0; m < count_; ++m) {
       rise += 2.0 * term[m].re;
       rise_of_limit += m < modes_of_limit ? 2.0 * term[m].re : 0.0;
@@ -75,7 +77,21 @@ void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
   }
 }
 
-// Two modes at a time, which with their states and factors fit into the registers of a processor.
+namespace {
+
+/// The first cell after the stretch of one value that begins at a cell.
+std::size_t stretch_end(Signs signs, std::size_t begin) noexcept { return signs.run_end(begin); }
+std::size_t stretch_end(Span<const double>, std::size_t begin) noexcept { return begin + 1; }
+/// The first cell of the stretch of one value that ends before a cell.
+std::size_t stretch_begin(Signs signs, std::size_t end) noexcept {
+  return signs.run_begin(end - 1);
+}
+std::size_t stretch_begin(Span<const double>, std::size_t end) noexcept { return end - 1; }
+
+}  // namespace
+
+// Two modes at a time, which with their states and factors fit into the registers of a processor,
+// and stretch by stretch of equal signs, in which nothing has to be fetched but the product.
 template <typename Signal>
 void PhiOperator::apply(Signal signal, Span<double> product) const noexcept {
   for (std::size_t i = 0; i < cells_; ++i) {
@@ -87,14 +103,16 @@ void PhiOperator::apply(Signal signal, Span<double> product) const noexcept {
     const Complex correlation[2] = {correlation_[m], correlation_[m + 1]};
     Complex first;
     Complex second;
-    for (std::size_t i = 0; i < cells_; ++i) {
+    for (std::size_t i = 0; i < cells_;) {
       const double value = signal[i];
-      product[i] = product[i] + real_of_product(correlation[0], first) +
-                   real_of_product(correlation[1], second);
-      first = step[0] * first;
-      second = step[1] * second;
-      first.re += value;
-      second.re += value;
+      for (const std::size_t end = stretch_end(signal, i); i < end; ++i) {
+        product[i] = product[i] + real_of_product(correlation[0], first) +
+                     real_of_product(correlation[1], second);
+        first = step[0] * first;
+        second = step[1] * second;
+        first.re += value;
+        second.re += value;
+      }
     }
     at_end[m] = end_[m] * first;
     at_end[m + 1] = end_[m + 1] * second;
@@ -107,14 +125,18 @@ void PhiOperator::apply(Signal signal, Span<double> product) const noexcept {
   }
   for (std::size_t m = 0; m < count_; m += 2) {
     const Complex step[2] = {step_[m], step_[m + 1]};
-    const Complex correlation[2] = {correlation_[m], correlation_[m + 1]};
     Complex first = back[m];
     Complex second = back[m + 1];
-    for (std::size_t i = cells_; i-- > 0;) {
-      const double value = signal[i];
-      product[i] = product[i] + first.re + second.re;
-      first = step[0] * first + value * correlation[0];
-      second = step[1] * second + value * correlation[1];
+    for (std::size_t i = cells_; i != 0;) {
+      const std::size_t begin = stretch_begin(signal, i);
+      const double value = signal[begin];
+      const Complex added[2] = {value * correlation_[m], value * correlation_[m + 1]};
+      while (i != begin) {
+        --i;
+        product[i] = product[i] + first.re + second.re;
+        first = step[0] * first + added[0];
+        second = step[1] * second + added[1];
+      }
     }
   }
 }
@@ -172,11 +194,7 @@ double PhiOperator::pulse(std::size_t cell, std::size_t width) const noexcept {
     }
     at_end[m] = end_[m] * sum * exp(cells_after * pole_h_[m]);
   }
-  double energy = endless_pulse_[width - 1];
-  for (std::size_t m = 0; m < count_; ++m) {
-    energy += real_of_product(at_end[m], model_->gramian_row(m, at_end));
-  }
-  return energy;
+  return endless_pulse_[width - 1] + model_->gramian_form(at_end);
 }
 
 }  // namespace emax

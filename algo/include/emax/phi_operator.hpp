@@ -60,6 +60,9 @@ class PhiOperator {
   /// for the energy difference, at the sensor's output alone. Free of charge.
   double pulse_limit(std::size_t width) const noexcept { return pulse_limit_[width - 1]; }
 
+  /// The greatest of the `pulse_limit()`s.
+  double greatest_pulse_limit() const noexcept { return greatest_pulse_limit_; }
+
   /// No element of the diagonal is larger than this, which is that of an endless record; for the
   /// energy difference, that of the sensor alone. Free of charge.
   double diagonal_limit() const noexcept { return diagonal_limit_; }
@@ -79,6 +82,7 @@ class PhiOperator {
   Complex pole_h_[kMaxModes] = {};
   double endless_pulse_[kMaxPulse] = {};
   double pulse_limit_[kMaxPulse] = {};
+  double greatest_pulse_limit_ = 0.0;
   double endless_diagonal_ = 0.0;
   double diagonal_limit_ = 0.0;
   double duration_s_ = 0.0;

@@ -27,6 +27,35 @@ class Signs {
   /// @returns +1 or -1.
   double operator[](std::size_t cell) const noexcept { return is_positive(cell) ? 1.0 : -1.0; }
 
+  /// The first cell after the run of equal signs that begins at a cell.
+  std::size_t run_end(std::size_t cell) const noexcept {
+    const std::uint32_t sign = is_positive(cell) ? ~std::uint32_t{0} : 0;
+    std::size_t word = cell / kBits;
+    std::uint32_t other = (words_[word] ^ sign) & (~std::uint32_t{0} << (cell % kBits));
+    while (other == 0) {
+      if (++word == sign_words(size_)) {
+        return size_;
+      }
+      other = words_[word] ^ sign;
+    }
+    const std::size_t end = kBits * word + static_cast<std::size_t>(__builtin_ctz(other));
+    return end < size_ ? end : size_;
+  }
+  /// The first cell of the run of equal signs that ends with a cell.
+  std::size_t run_begin(std::size_t cell) const noexcept {
+    const std::uint32_t sign = is_positive(cell) ? ~std::uint32_t{0} : 0;
+    std::size_t word = cell / kBits;
+    std::uint32_t other = (words_[word] ^ sign) & (~std::uint32_t{0} >> (kBits - 1 - cell % kBits));
+    while (other == 0) {
+      if (word == 0) {
+        return 0;
+      }
+      --word;
+      other = words_[word] ^ sign;
+    }
+    return kBits * (word + 1) - static_cast<std::size_t>(__builtin_clz(other));
+  }
+
   void set(std::size_t cell, bool positive) const noexcept {
     const std::uint32_t bit = std::uint32_t{1} << (cell % kBits);
     std::uint32_t& word = words_[cell / kBits];
