@@ -41,31 +41,6 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
   return static_cast<std::size_t>(whole) + (cells - whole > 1e-9 * cells ? 1u : 0u);
 }
 
-/// The end of the run of equal signs that a cell is in: the first cell after it.
-std::size_t end_of_run(std::size_t cell, Signs signs) noexcept {
-  const bool sign = signs.is_positive(cell);
-  std::size_t end = cell + 1;
-  while (end < signs.size() && signs.is_positive(end) == sign) {
-    ++end;
-  }
-  return end;
-}
-
-/// Hands over the stretches of up to kMaxPulse cells that begin at a cell and end within its run,
-/// each with its sign times the sum of the product over it.
-template <typename Visit>
-void visit_pulses(std::size_t cell, std::size_t run_end, double sign, Span<const double> product,
-                  const Visit& visit) noexcept {
-  const std::size_t left = run_end - cell;
-  const std::size_t longest = left < PhiOperator::kMaxPulse ? left : PhiOperator::kMaxPulse;
-  const double* value = product.from(cell).data();
-  double held = 0.0;
-  for (std::size_t k = 0; k < longest; ++k) {
-    held += sign * value[k];
-    visit(k + 1, held);
-  }
-}
-
 }  // namespace
 
 void clear(MaximumEnergy& maximum) noexcept {
@@ -97,64 +72,48 @@ double ascent_shift(const ModalModel& model, double cell_s) noexcept {
 void PulseTurn::start() noexcept {
   best_ = {};
   next_ = 0;
-  phase_ = Phase::kLimits;
+  done_ = false;
 }
 
 std::size_t PulseTurn::step(const PhiOperator& phi, Signs signs,
                             Span<const double> product) noexcept {
-  if (phase_ == Phase::kLimits) {
-    return look_at_limits(phi, signs, product);
+  if (done_) {
+    return 0;
   }
-  return phase_ == Phase::kEnergies ? look_at_energies(phi, signs, product) : 0;
-}
-
-std::size_t PulseTurn::look_at_limits(const PhiOperator& phi, Signs signs,
-                                      Span<const double> product) noexcept {
-  const double smallest_gain = 0.25 * kSmallestGain * abs(dot(signs, product));
-  best_.gain = smallest_gain;
-  std::size_t run_end = 0;
-  for (std::size_t i = 0; i < signs.size(); ++i) {
-    run_end = i < run_end ? run_end : end_of_run(i, signs);
-    visit_pulses(i, run_end, signs[i], product, [&](std::size_t width, double held) {
-      const double gain = phi.pulse_limit(width) - held;
-      if (gain > best_.gain) {
-        best_ = {i, width, gain};
-      }
-    });
+  if (next_ == 0) {
+    best_.gain = 0.25 * kSmallestGain * abs(dot(signs, product));
   }
-  if (best_.width != 0) {
-    best_.gain += phi.pulse(best_.cell, best_.width) - phi.pulse_limit(best_.width);
-    if (!(best_.gain > smallest_gain)) {
-      // Near T a pulse may have much less energy than its limit.
-      best_ = {0, 0, smallest_gain};
-      phase_ = Phase::kEnergies;
-      return signs.size();
-    }
-  }
-  turn_best(signs);
-  return signs.size();
-}
-
-std::size_t PulseTurn::look_at_energies(const PhiOperator& phi, Signs signs,
-                                        Span<const double> product) noexcept {
   std::size_t work = 0;
-  std::size_t run_end = 0;
-  for (; next_ < signs.size() && work < kWorkOfPulses; ++next_) {
-    ++work;
-    run_end = next_ < run_end ? run_end : end_of_run(next_, signs);
-    visit_pulses(next_, run_end, signs[next_], product, [&](std::size_t width, double held) {
-      if (!(phi.pulse_limit(width) - held > best_.gain)) {
-        return;
-      }
-      work += kWorkOfPulse;
-      const double gain = phi.pulse(next_, width) - held;
-      if (gain > best_.gain) {
-        best_ = {next_, width, gain};
-      }
-    });
+  while (next_ < signs.size() && work < kWorkOfPulses) {
+    const std::size_t run_end = signs.run_end(next_);
+    for (const double sign = signs[next_]; next_ < run_end && work < kWorkOfPulses; ++next_) {
+      work += look_at_next(phi, run_end, sign, product);
+    }
   }
   if (next_ == signs.size()) {
     turn_best(signs);
+  }
+  return work;
+}
+
+std::size_t PulseTurn::look_at_next(const PhiOperator& phi, std::size_t run_end, double sign,
+                                    Span<const double> product) noexcept {
+  const std::size_t left = run_end - next_;
+  const std::size_t longest = left < PhiOperator::kMaxPulse ? left : PhiOperator::kMaxPulse;
+  const double* value = product.from(next_).data();
+  std::size_t work = 1;
+  double held = 0.0;
+  for (std::size_t k = 0; k < longest; ++k) {
+    held += sign * value[k];
+    if (phi.pulse_limit(k + 1) - held > best_.gain) {
+      work += kWorkOfPulse;
+      const double gain = phi.pulse(next_, k + 1) - held;
+      if (gain > best_.gain) {
+        best_ = {next_, k + 1, gain};
+      }
+    } else if (held > phi.greatest_pulse_limit()) {
+      break;
+    }
   }
   return work;
 }
@@ -163,7 +122,7 @@ void PulseTurn::turn_best(Signs signs) noexcept {
   for (std::size_t i = best_.cell; i < best_.cell + best_.width; ++i) {
     signs.turn(i);
   }
-  phase_ = Phase::kDone;
+  done_ = true;
 }
 
 Status EnergySearch::start(const ModalModel& model, const SearchSettings& settings) noexcept {

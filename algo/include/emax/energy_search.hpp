@@ -130,27 +130,25 @@ std::size_t search_cells(const ModalModel& model, const SearchSettings& settings
 ///     }
 ///
 /// Turning the cells i to j of sign c changes the energy by 4 (their pulse's energy - c sum of
-/// (Phi x)). The stretch with the largest gain is taken when the pulses' energies are set to their
-/// limits, which are exact far from T; if that one does not gain, the one with the largest gain.
-/// Gains below 1e-9 of the energy are left to the refinement.
+/// (Phi x)). The stretch that gains most is taken; a pulse's energy is computed where its limit
+/// allows it to be that one. Stretches that hold more than any pulse's limit are not made longer:
+/// at rest they only hold more. Gains below 1e-9 of the energy are left to the refinement.
 class PulseTurn {
  public:
   void start() noexcept;
 
-  /// Looks at all stretches with the pulses' limits, or at some with their energies.
+  /// Looks at some stretches; with the last ones, turns the best.
   ///
   /// @param[in,out] signs   The pattern.
   /// @param[in]     product Phi times the pattern; no longer so if a stretch has been turned.
   /// @returns What it has cost, in cells of a product.
   std::size_t step(const PhiOperator& phi, Signs signs, Span<const double> product) noexcept;
 
-  bool done() const noexcept { return phase_ == Phase::kDone; }
+  bool done() const noexcept { return done_; }
   /// @returns With `done()`, whether a stretch was turned.
   bool turned() const noexcept { return best_.width != 0; }
 
  private:
-  enum class Phase : std::uint8_t { kDone, kLimits, kEnergies };
-
   /// A stretch of cells, and a quarter of what turning it adds to the energy.
   struct Pulse {
     std::size_t cell = 0;
@@ -158,15 +156,14 @@ class PulseTurn {
     double gain = 0.0;
   };
 
-  std::size_t look_at_limits(const PhiOperator& phi, Signs signs,
-                             Span<const double> product) noexcept;
-  std::size_t look_at_energies(const PhiOperator& phi, Signs signs,
-                               Span<const double> product) noexcept;
+  /// Looks at the stretches that begin at the next cell. @returns What it has cost.
+  std::size_t look_at_next(const PhiOperator& phi, std::size_t run_end, double sign,
+                           Span<const double> product) noexcept;
   void turn_best(Signs signs) noexcept;
 
   Pulse best_ = {};
   std::size_t next_ = 0;  // The cell whose pulses come next.
-  Phase phase_ = Phase::kDone;
+  bool done_ = true;
 };
 
 static_assert(std::is_trivially_copyable_v<PulseTurn>);
