@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMaxSamples = 1048576.0;
 constexpr double kSamplesPerPeriod = 64.0;
-constexpr std::uint32_t kSamplesPerStep = 40;
+constexpr std::uint32_t kSamplesPerStep = 24;
 
 double samples_for(const ModalModel& model, double duration_s) noexcept {
   double fastest = 0.0;

@@ -300,11 +300,18 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   return Status::kOk;
 }
 
-void EnergyBound::fill_vectors(GridWorkspace& workspace) const noexcept {
+/// One vector; all of them together are one sequence of random numbers.
+void EnergyBound::fill_vector(GridWorkspace& workspace) noexcept {
+  const std::size_t begin = vector_ * cells_;
   WichmannHill random;
   (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kSeed));
-  for (double& number : workspace.numbers().first(kRank * cells_)) {
+  random.jump(begin);
+  for (double& number : workspace.numbers().from(begin).first(cells_)) {
     number = random.next() - 0.5;
+  }
+  if (++vector_ == kRank) {
+    vector_ = 0;
+    phase_ = Phase::kProposal;
   }
 }
 
@@ -415,8 +422,7 @@ void EnergyBound::next_check(bool passed) noexcept {
 
 Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
   if (phase_ == Phase::kFirstVectors) {
-    fill_vectors(workspace);
-    phase_ = Phase::kProposal;
+    fill_vector(workspace);
     return Status::kOk;
   }
   if (phase_ == Phase::kProposal) {

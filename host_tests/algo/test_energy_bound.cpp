@@ -341,7 +341,7 @@ TEST(EnergyBound, SaysNothingBeforeTheProof) {
 TEST(EnergyBound, AProposalThatIsNotANumberIsNoBound) {
   const ModalModel model = paper_model();
   ASSERT_EQ(bound.start(model, 2e-3, workspace), Status::kOk);
-  // The first step lays the vectors that the proposal is made from.
+  // The first step lays the first of the vectors that the proposal is made from.
   Status status = bound.step(model, workspace);
   for (double& number : workspace.numbers()) {
     number = std::numeric_limits<double>::quiet_NaN();

@@ -33,7 +33,7 @@ class AbsoluteError {
   ///   done then, with a value of 0.
   Status start(const ModalModel& model, double duration_s) noexcept;
 
-  /// Looks at the next 40 samples.
+  /// Looks at the next 24 samples.
   ///
   /// @param[in]  model   The same in each step.
   /// @param[out] zeros_s The zeros of k, ascending, as far as there is room; may be empty.

@@ -125,7 +125,7 @@ class EnergyBound {
   Status start(const ModalModel& model, double duration_s, GridWorkspace& workspace) noexcept;
 
   /// @returns
-  /// * kOk: A part of the work is done: one product with Phi, or 16 steps of a check.
+  /// * kOk: A part of the work is done: one vector or its product with Phi, or 16 steps of a check.
   /// * kNotProven: With the last step: no multiple of d passed, and there is no bound.
   Status step(const ModalModel& model, GridWorkspace& workspace) noexcept;
 
@@ -145,7 +145,7 @@ class EnergyBound {
  private:
   enum class Phase : std::uint8_t { kDone, kFirstVectors, kProposal, kCheck };
 
-  void fill_vectors(GridWorkspace& workspace) const noexcept;
+  void fill_vector(GridWorkspace& workspace) noexcept;
   void sweep(const ModalModel& model, GridWorkspace& workspace) noexcept;
   void take_proposal(GridWorkspace& workspace) noexcept;
   double shape(std::size_t step, Span<const double> d) const noexcept;

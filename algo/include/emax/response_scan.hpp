@@ -11,7 +11,7 @@ namespace emax {
 /// Samples of k at 64 points per period of its fastest mode, and where they stand.
 struct ResponseScan {
   /// What is looked at in one step: up to some thousand exponentials.
-  static constexpr std::uint32_t kSamplesPerStep = 40;
+  static constexpr std::uint32_t kSamplesPerStep = 24;
 
   double step_s = 0.0;
   double slope = 0.0;       ///< Of k at the last sample.
