@@ -377,7 +377,7 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
   ASSERT_EQ(stages, expected);
   EXPECT_EQ(evaluation.stage(), Stage::kDone);
   EXPECT_EQ(evaluation.progress(), 1.0);
-  EXPECT_EQ(steps[1], 1667);  // 10000 draws, 6 a step.
+  EXPECT_EQ(steps[1], 2500);  // 10000 draws, 4 a step.
   // No stage is done in one go.
   EXPECT_GT(*std::min_element(steps.begin(), steps.end()), 5);
   evaluation.step(shared_workspace());

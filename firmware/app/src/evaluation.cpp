@@ -10,7 +10,7 @@
 namespace emax::app {
 namespace {
 
-constexpr std::uint32_t kDrawsPerStep = 6;
+constexpr std::uint32_t kDrawsPerStep = 4;
 constexpr std::uint64_t kFitDrawsOffset = std::uint64_t{1} << 60U;
 
 // Work is counted in cells of Phi's products: a value from the store costs next to nothing.
