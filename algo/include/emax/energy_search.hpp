@@ -187,8 +187,8 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// one wins, so the result is the same on every target. 2.6 KiB beside the workspace.
 ///
 /// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
-/// few switches are best, and up to 250 where it is a hundred switches; a product costs 25 to 40
-/// instructions per cell and mode, and looking for a pulse another 60 per cell.
+/// few switches are best, and up to 250 where it is a hundred switches; a product costs some 25
+/// instructions per cell and mode, and looking for a pulse two thirds of a product.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 4;

@@ -18,7 +18,7 @@ namespace emax {
 /// Phi is a Toeplitz matrix (what an endless record would give) minus what the output still holds
 /// after T, a form of the modes' states at T. Both are sums over modes of decaying exponentials of
 /// the distance between cells, so one forward and one backward recursion apply Phi to a signal.
-/// 0.8 KiB, whatever the number of cells, as it refers to the model; so it is made anew where it is
+/// 0.7 KiB, whatever the number of cells, as it refers to the model; so it is made anew where it is
 /// needed, which costs less than a product with 20 cells. Errors are of the order of rounding
 /// relative to the endless record's energy.
 class PhiOperator {
@@ -79,7 +79,6 @@ class PhiOperator {
   Complex correlation_[kPlaces] = {};  // the Toeplitz part at distance d >= 1 is Re sum
                                        // correlation step^(d - 1)
   Complex end_[kPlaces] = {};          // response of the last cell's mode at T
-  Complex pole_h_[kMaxModes] = {};
   double endless_pulse_[kMaxPulse] = {};
   double pulse_limit_[kMaxPulse] = {};
   double greatest_pulse_limit_ = 0.0;
