@@ -14,7 +14,7 @@ constexpr std::size_t kMostCells = 100;  // Four words.
 void set_random_runs(Signs signs, std::mt19937_64& random) {
   bool positive = random() % 2 == 0;
   for (std::size_t i = 0; i < signs.size(); positive = !positive) {
-    for (std::size_t left = 1 + random() % (random() % 80 + 1); left != 0 && i < signs.size();
+    for (std::uint64_t left = 1 + random() % (random() % 80 + 1); left != 0 && i < signs.size();
          --left, ++i) {
       signs.set(i, positive);
     }
