@@ -53,6 +53,14 @@ TEST(TextWriter, WordsOfOthersInOneLine) {
   EXPECT_EQ(one_line("\xC3\xBC\xC3\xBC\xC3\xBC\xC3\xBC", 3), "\xC3\xBC\xC3\xBC\xC3\xBC ...");
 }
 
+TEST(TextWriter, ColumnsCountCharacters) {
+  EXPECT_EQ(text_of([](TextWriter& out) {
+              out.left(6).text("M\xC3\xBCll").text("|").right(4).text("\xE2\x82\xAC").text("|");
+              out.left(2).text("\xF0\x9F\x98\x80\xC3\xBC\xC3\xBC").text("|");
+            }),
+            "M\xC3\xBCll  |   \xE2\x82\xAC|\xF0\x9F\x98\x80\xC3\xBC\xC3\xBC|");
+}
+
 TEST(TextWriter, WordsAndLines) {
   EXPECT_EQ(text_of([](TextWriter& out) {
               const char part[] = {'c', 'd'};

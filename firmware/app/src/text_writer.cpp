@@ -23,6 +23,15 @@ std::size_t length_of(const char* words) noexcept {
   return length;
 }
 
+/// Of UTF-8: bytes that do not go on with a character begun before.
+std::size_t characters_of(const char* bytes, std::size_t count) noexcept {
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    characters += (static_cast<unsigned char>(bytes[i]) & 0xC0U) != 0x80U ? 1U : 0U;
+  }
+  return characters;
+}
+
 constexpr bool is_blank(char character) noexcept {
   return character == ' ' || (character >= '\t' && character <= '\r');
 }
@@ -124,7 +133,8 @@ TextWriter& TextWriter::right(std::size_t width) noexcept {
 }
 
 void TextWriter::put(const char* characters, std::size_t count) noexcept {
-  const std::size_t padding = width_ > count ? width_ - count : 0;
+  const std::size_t shown = width_ > 0 ? characters_of(characters, count) : count;
+  const std::size_t padding = width_ > shown ? width_ - shown : 0;
   width_ = 0;
   if (flush_right_) {
     spaces(padding);

@@ -11,6 +11,7 @@
 #include "emax/elementary.hpp"
 
 #include "console.hpp"
+#include "rounding.hpp"
 
 namespace emax::host {
 
@@ -18,8 +19,15 @@ namespace {
 
 using app::TextWriter;
 
-constexpr std::size_t kMinNameWidth = 10;
-constexpr std::size_t kMaxNameWidth = 30;
+// Of the columns whose width follows from what is in them.
+struct Widths {
+  std::size_t rank = 7;
+  std::size_t name = 10;
+};
+
+constexpr std::size_t kNameShown = 36;
+// What follows longer names of a pair starts a line of its own.
+constexpr std::size_t kPairShown = 48;
 
 // Not a number for an energy difference below 0.
 double rms_v(const Result& result) noexcept { return sqrt(result.energy_v2s / result.duration_s); }
@@ -43,9 +51,15 @@ void write_conditions(const Result& first, TextWriter& out) {
   out.text(first.method == "paper" ? ", the paper's method\n\n" : ", the best signal found\n\n");
 }
 
-void write_row(const Result& result, const Rank& rank, std::size_t width, TextWriter& out) {
-  out.text("  ").left(7).text(text_of(rank).c_str());
-  out.left(width).text(name_of(result).c_str()).right(17).scientific(result.energy_v2s, 8);
+// As much of a name as lines have room for.
+std::string short_name_of(const Result& result) { return shortened(name_of(result), kNameShown); }
+
+void write_row(const Result& result, const Rank& rank, const Widths& widths, TextWriter& out) {
+  out.text("  ").left(widths.rank).text(text_of(rank).c_str());
+  out.left(widths.name)
+      .text(short_name_of(result).c_str())
+      .right(17)
+      .scientific(result.energy_v2s, 8);
   if (result.has_uncertainty) {
     out.right(11).scientific(result.u_energy_v2s, 2);
   } else {
@@ -57,7 +71,7 @@ void write_row(const Result& result, const Rank& rank, std::size_t width, TextWr
     out.right(9).text("-");
   }
   if (result.has_bound) {
-    out.right(12).scientific(result.bound_v2s, 4);
+    out.right(12).scientific(rounded_up(result.bound_v2s, 4), 4);
   } else {
     out.right(12).text("-");
   }
@@ -68,14 +82,16 @@ void write_row(const Result& result, const Rank& rank, std::size_t width, TextWr
 }
 
 void write_pair(const Result& first, const Result& second, const Pair& pair, TextWriter& out) {
-  out.text("  ").text(name_of(first).c_str()).text(" and ").text(name_of(second).c_str());
+  const std::string names = short_name_of(first) + " and " + short_name_of(second);
+  out.text("  ").text(names.c_str());
   if (!pair.has_uncertainty) {
     out.text(": CANNOT BE RANKED: no uncertainty of E is known for ");
     out.text(first.has_uncertainty || second.has_uncertainty ? "one of them" : "either");
     out.text(";\n    give u of S, f0 and beta, or measured points\n");
     return;
   }
-  out.text(pair.told_apart ? ": told apart: " : ": CANNOT BE TOLD APART: ");
+  out.text(pair.told_apart ? ": told apart:" : ": CANNOT BE TOLD APART:");
+  out.text(characters_in(names) > kPairShown ? "\n    " : " ");
   out.text("the difference is ").scientific(pair.difference_v2s, 3).text(" V^2 s (");
   out.general(100.0 * pair.difference_v2s / abs(first.energy_v2s), 3);
   out.text(" %),\n    its expanded uncertainty (k = 2) ").scientific(pair.expanded_v2s, 3);
@@ -161,25 +177,26 @@ std::string text_of(const Rank& rank) {
 
 void write_comparison(const Comparison& comparison, TextWriter& out) {
   const Result& first = comparison.results.front();
-  std::size_t width = kMinNameWidth;
-  for (const Result& result : comparison.results) {
-    width = std::max(width, std::min(name_of(result).size() + 1, kMaxNameWidth));
+  Widths widths;
+  for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+    widths.rank = std::max(widths.rank, text_of(comparison.ranks[i]).size() + 1);
+    widths.name = std::max(widths.name, characters_in(short_name_of(comparison.results[i])) + 1);
   }
   out.text("COMPARISON OF ").integer(comparison.results.size());
   out.text(" DEVICES (emax ").text(app::kVersion).text(")\n");
   write_conditions(first, out);
-  out.text("  ").left(7).text("rank").left(width).text("device");
-  out.right(17).text("E_max in V^2 s").right(11).text("u(E)").right(9).text("rms in %");
+  out.text("  ").left(widths.rank).text("rank").left(widths.name).text("device");
+  out.right(17).text("E in V^2 s").right(11).text("u(E)").right(9).text("rms in %");
   out.right(12).text("bound").text("  interval");
-  if (first.has_uncertainty) {
-    out.text(" (").general(100.0 * first.probability, 6).text(" %)");
+  const Result& with_trials = first_with_trials(comparison.results);
+  if (with_trials.has_uncertainty) {
+    out.text(" (").general(100.0 * with_trials.probability, 6).text(" %)");
   }
   out.line();
   for (std::size_t i = 0; i < comparison.results.size(); ++i) {
-    write_row(comparison.results[i], comparison.ranks[i], width, out);
+    write_row(comparison.results[i], comparison.ranks[i], widths, out);
   }
-  out.text(
-      "  E_max at the estimates; rms: sqrt(E/T) in percent of S a; bound: no signal has more\n");
+  out.text("  E: at the estimates; rms: sqrt(E/T) in percent of S a; bound: no signal has more\n");
   out.text(
       "  u(E): from the standard uncertainties of S, f0 and beta. A rank of 1-2 is first or\n");
   out.text("  second: the uncertainties do not say which.\n\nNEIGHBOURS\n");
@@ -228,7 +245,8 @@ void write_comparison_json(const Comparison& comparison, TextWriter& out) {
   json.number("T", first.duration_s);
   json.words("criterion", first.criterion.c_str());
   json.words("method", first.method.c_str());
-  write_optional("probability", first.has_uncertainty, first.probability, json);
+  const Result& with_trials = first_with_trials(comparison.results);
+  write_optional("probability", with_trials.has_uncertainty, with_trials.probability, json);
   json.close();
   json.open("devices", '[');
   for (std::size_t i = 0; i < comparison.results.size(); ++i) {

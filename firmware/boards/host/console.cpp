@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "emax/app/utf8.hpp"
+
 #include "stop_request.hpp"
 
 namespace emax::host {
@@ -32,14 +34,49 @@ void FileSink::flush() noexcept {
 }
 
 std::string printable(std::string_view text) {
-  std::string line(text.substr(0, kMaxPrintable));
-  for (char& c : line) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) {
-      c = '?';
+  const std::string words(text);
+  std::string line;
+  std::size_t shown = 0;
+  for (std::size_t at = 0; at < words.size(); ++shown) {
+    if (shown == kMaxPrintable) {
+      return line + "...";
     }
+    const app::Character next = app::first_character(&words[at]);
+    const bool is_fit = next.code != app::kReplacement && app::is_printable(next.code);
+    line += is_fit ? words.substr(at, next.length) : "?";
+    at += next.length > 0 ? next.length : 1;  // A zero may stand in the text of others.
   }
-  return text.size() > kMaxPrintable ? line + "..." : line;
+  return line;
+}
+
+std::size_t characters_in(const std::string& name) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < name.size(); at += app::first_character(&name[at]).length) {
+    ++count;
+  }
+  return count;
+}
+
+std::string shortened(const std::string& name, std::size_t most) {
+  constexpr std::string_view kDots = "...";
+  const std::size_t count = characters_in(name);
+  if (count <= most) {
+    return name;
+  }
+  const std::size_t tail = (most - kDots.size()) / 2;
+  const std::size_t head = most - kDots.size() - tail;
+  std::string both;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t length = app::first_character(&name[at]).length;
+    if (i < head || i >= count - tail) {
+      both += name.substr(at, length);
+    } else if (i == head) {
+      both += kDots;
+    }
+    at += length;
+  }
+  return both;
 }
 
 int finish(const Problem& problem) {

@@ -38,9 +38,18 @@ class StringSink final : public app::TextSink {
   std::string text_;
 };
 
-/// @returns Text of others that is fit for a line of ours: control characters become '?', and what
-/// goes beyond 200 characters becomes "...".
+/// @returns Text of others that is fit for a line of ours, as valid UTF-8: what is not, and what
+/// does not stand in a line as it is, becomes '?'; what goes beyond 200 characters becomes "...".
 std::string printable(std::string_view text);
+
+/// @param[in] name What `printable()` returns.
+/// @returns How many columns it takes in a table.
+std::size_t characters_in(const std::string& name);
+
+/// @param[in] name The same.
+/// @returns The name in at most `most` characters, 3 or more. "..." stands for what has been in the
+/// middle, since a serial number comes last.
+std::string shortened(const std::string& name, std::size_t most);
 
 /// Says why the program ends, in one line on standard error, and returns the exit status for it.
 int finish(const Problem& problem);

@@ -24,7 +24,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kTimeLimit{20};
 constexpr int kPollInterval = 20;  // In milliseconds.
 constexpr std::size_t kMostWords = 4096;
 
@@ -141,8 +140,15 @@ class Spawn final {
 
 GnuplotRun failed(const std::string& reason) { return {GnuplotEnd::kFailed, reason}; }
 
-GnuplotRun wait_for(pid_t child, Pipe& complaints) {
-  const Clock::time_point deadline = Clock::now() + kTimeLimit;
+GnuplotRun too_late(std::chrono::milliseconds longest) {
+  StringSink reason;
+  app::TextWriter(reason).text("it has not ended within ");
+  app::TextWriter(reason).general(std::chrono::duration<double>(longest).count(), 6).text(" s");
+  return failed(reason.text());
+}
+
+GnuplotRun wait_for(pid_t child, Pipe& complaints, std::chrono::milliseconds longest) {
+  const Clock::time_point deadline = Clock::now() + longest;
   std::string words;
   int status = 0;
   for (;;) {
@@ -154,7 +160,7 @@ GnuplotRun wait_for(pid_t child, Pipe& complaints) {
     if (is_late || stop_requested()) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);
-      return is_late ? failed("it has not ended within 20 s") : GnuplotRun{GnuplotEnd::kStopped};
+      return is_late ? too_late(longest) : GnuplotRun{GnuplotEnd::kStopped};
     }
   }
   if (stop_requested()) {
@@ -170,7 +176,8 @@ GnuplotRun wait_for(pid_t child, Pipe& complaints) {
 
 }  // namespace
 
-GnuplotRun run_gnuplot(const std::string& directory, const char* script) {
+GnuplotRun run_gnuplot(const std::string& directory, const char* script,
+                       std::chrono::milliseconds longest) {
   const std::string program = find_on_path("gnuplot");
   if (program.empty()) {
     return {GnuplotEnd::kMissing};
@@ -186,7 +193,7 @@ GnuplotRun run_gnuplot(const std::string& directory, const char* script) {
     return failed(std::strerror(error));
   }
   complaints.close_writer();
-  return wait_for(child, complaints);
+  return wait_for(child, complaints, longest);
 }
 
 std::string gnuplot_string(const std::string& text) {

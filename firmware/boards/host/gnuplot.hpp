@@ -1,6 +1,7 @@
 // gnuplot, where there is one: draws what a script asks for, in a directory.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace emax::host {
@@ -17,11 +18,16 @@ struct GnuplotRun {
   std::string reason = {};  ///< Of kFailed, as the middle of a line.
 };
 
-/// Runs gnuplot without a shell, without the user's own settings and for at most 20 s.
+/// How long drawing may take, on a slow and busy machine.
+inline constexpr std::chrono::milliseconds kDrawingTime{20'000};
+
+/// Runs gnuplot without a shell and without the user's own settings.
 ///
 /// @param[in] directory Where it runs: names in the script are relative to it.
 /// @param[in] script    The name of a file there.
-GnuplotRun run_gnuplot(const std::string& directory, const char* script);
+/// @param[in] longest   What has not ended then is killed, and kFailed.
+GnuplotRun run_gnuplot(const std::string& directory, const char* script,
+                       std::chrono::milliseconds longest = kDrawingTime);
 
 /// @returns Text as a string of a script. Single quotes and no line feeds: nothing in it can end
 /// the string, and nothing is expanded.

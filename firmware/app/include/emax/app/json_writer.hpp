@@ -61,20 +61,10 @@ class JsonWriter {
     out_.text(value ? "true" : "false");
   }
 
+  /// UTF-8 as the characters that it says; U+FFFD for what is not valid.
   void words(const char* name, const char* value) noexcept {
     begin(name);
-    escaped(value);
-  }
-
-  /// UTF-8 as the characters that it says; U+FFFD for what is not valid.
-  void quote(const char* name, const char* value) noexcept {
-    begin(name);
-    write('"');
-    for (Character next = first_character(value); next.length > 0; next = first_character(value)) {
-      write_character(next.code);
-      value += next.length;
-    }
-    write('"');
+    quoted(value);
   }
 
   void pair(const char* name, double first, double second) noexcept {
@@ -100,16 +90,16 @@ class JsonWriter {
     }
     is_first_ = false;
     if (name != nullptr) {
-      escaped(name);
+      quoted(name);
       out_.text(": ");
     }
   }
 
-  /// One character per byte: a name need not be UTF-8, JSON must be.
-  void escaped(const char* value) noexcept {
+  void quoted(const char* value) noexcept {
     write('"');
-    for (; *value != '\0'; ++value) {
-      write_character(static_cast<unsigned char>(*value));
+    for (Character next = first_character(value); next.length > 0; next = first_character(value)) {
+      write_character(next.code);
+      value += next.length;
     }
     write('"');
   }
