@@ -1,10 +1,12 @@
 """`emax compare`: devices side by side, ranked only as far as their uncertainties carry."""
 
 import csv
+import html
 import io
 import json
 import math
 import os
+import re
 from xml.etree import ElementTree
 
 from program_test import DATA, ProgramTest, main
@@ -147,6 +149,30 @@ class CompareOutput(Comparing, ProgramTest):
         self.assertIn('say "hi", <b>&amp;</b>?next 12;3', text)
         self.assertLess(len(text), 3000)
 
+    def test_columns_stand_below_one_another(self):
+        long = "a long name " * 5
+        names = ["\u00c4\u00d6\u00dc \u0416\u2126", "plain", long + "17", long + "18", "\U0001F600" * 300]
+        columns = [("E in V^2 s", r"5\.\d{8}e-03"), ("u(E)", r"1\.73e-05"), ("bound", r"6\.0000e-03")]
+        for count in [5, 120]:  # Ranks of up to seven characters.
+            for i in range(count):
+                self.save(f"{i}.json", result(5e-3 + 1e-9 * i, bound=6e-3, device=names[i % 5]))
+            text = self.run_program("compare", *(f"{i}.json" for i in range(count))).stdout.decode()
+            lines = text.splitlines()
+            self.assertLessEqual(max(map(len, lines)), 130)
+            head = next(line for line in lines if line.startswith("  rank"))
+            rows = [line for line in lines if re.search(r"e-03 to 5\.", line)]
+            self.assertEqual(len(rows), count)
+            for row in rows:
+                # The end of each heading is that of its numbers.
+                for title, number in columns:
+                    self.assertRegex(row[: head.index(title) + len(title)], f" {number}$")
+            # The serial number at the end of a name is still there.
+            self.assertTrue(any(re.search(r"\.\.\.[a-z ]*long name 17 ", row) for row in rows), rows[2])
+
+    def test_bound_in_fewer_digits_is_a_bound(self):
+        self.compare(result(bound=5.12341e-3), result(6e-3))
+        self.assertIn(" 5.1235e-03 ", self.succeed("compare", "0.json", "1.json"))
+
     def test_files(self):
         self.compare(result(), result(6e-3))
         printed = self.succeed("compare", "0.json", "1.json", "--out", "out")
@@ -164,8 +190,19 @@ class CompareOutput(Comparing, ProgramTest):
         drawn = ["".join(text.itertext()).strip()
                  for text in ElementTree.parse(self.directory / "out/comparison.svg").iter(SVG + "text")]
         self.assertIn("1-2  " + odd, drawn)
-        self.assertIn("1-2  " + "\u00fc" * 12 + "...", drawn)
-        self.assertIn("E_max in mV\u00b2 s", drawn)
+        self.assertIn("1-2  " + "\u00fc" * 11 + "..." + "\u00fc" * 10, drawn)
+        self.assertIn("E in mV\u00b2 s", drawn)
+
+    def test_picture_says_the_conditions(self):
+        both = [result(-5e-3), result(6e-3)]
+        for each in both:
+            each["energy"] |= {"criterion": "difference", "method": "paper"}
+        self.compare(*both)
+        self.succeed("compare", "0.json", "1.json", "--out", "out")
+        picture = (self.directory / "out/comparison.svg").read_text(encoding="utf-8")
+        self.assertIn("filter of order 10, 1000 Hz, energy difference, paper's method<", html.unescape(picture))
+        self.assertRegex(picture, r">\s*\u2212\d")  # The axis has minus signs.
+        self.assertNotRegex(picture, r">\s*-\d")
 
     def test_picture_of_many_shows_the_first(self):
         for i in range(50):
@@ -200,7 +237,7 @@ class CompareRefusals(Comparing, ProgramTest):
         self.save("a.json", result())
         self.save("b.json", result())
         for arguments, words in {
-            (): "no file; expected two results.json",
+            (): "no file; expected two or more results.json of emax report",
             ("a.json",): "a single file; expected two",
             ("a.json", "a.json"): "a.json: given twice",
             ("a.json", "b.json", "--jsn"): "--jsn: no option of emax compare; did you mean --json?",
@@ -223,6 +260,18 @@ class CompareRefusals(Comparing, ProgramTest):
                 self.save("b.json", other)
                 self.refuse(["compare", "a.json", "b.json", "--out", "out"], "emax: b.json: " + words, "a.json",
                             "expected the same conditions")
+
+    def test_trials_differ_behind_a_device_without_any(self):
+        for name, value in [("probability", 0.9), ("distribution", "normal")]:
+            other = result(7e-3)
+            other["monte_carlo"][name] = value
+            for file, each in zip("abc", [result(5e-3, None), result(6e-3), other]):
+                self.save(file, each)
+            self.refuse(["compare", "a", "b", "c"], f"emax: c: {name} is {value}", "in b")
+        self.save("c", result(7e-3))
+        self.assertIn("interval (95 %)", self.succeed("compare", "a", "b", "c"))
+        conditions = json.loads(self.succeed("compare", "a", "b", "c", "--json"))["conditions"]
+        self.assertEqual(conditions["probability"], 0.95)
 
     def test_fixed_gain(self):
         both = [result(), result(6e-3)]
@@ -268,7 +317,7 @@ class CompareRefusals(Comparing, ProgramTest):
 
     def test_missing_members(self):
         self.save("a.json", result())
-        for group, name in [*CONDITIONS, ("model", "S"), ("filter", "gain")]:
+        for group, name in [*CONDITIONS, ("model", "S"), ("filter", "gain"), ("monte_carlo", "interval")]:
             with self.subTest(member=name):
                 other = result()
                 del other[group][name]
@@ -289,6 +338,13 @@ class CompareRefusals(Comparing, ProgramTest):
         plain = self.run_program("compare", "0.json", "1.json", "--csv").stdout.decode()
         self.assertIn("M\u00fcller \U0001F600,", escaped)
         self.assertEqual(escaped, plain)
+
+    def test_names_are_characters_everywhere(self):
+        self.save("pr\u00fcf.json", result(device="M\u00fcller \U0001F600", serial="\u2116 7"))
+        self.save("1.json", result(6e-3))
+        found = json.loads(self.succeed("compare", "pr\u00fcf.json", "1.json", "--json"))["devices"][0]
+        self.assertEqual([found[name] for name in ["device", "serial", "file"]],
+                         ["M\u00fcller \U0001F600", "\u2116 7", "pr\u00fcf.json"])
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@
 #include "nearest.hpp"
 #include "options.hpp"
 #include "points_file.hpp"
+#include "rounding.hpp"
 #include "stop_request.hpp"
 #include "text_file.hpp"
 
@@ -367,11 +368,11 @@ void write_text(const Result& result, app::TextWriter& out) {
   out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n\n");
   out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");
   out.integer(switches).text(switches == 1 ? " switch\n" : " switches\n");
-  out.text("Proven      E <= ").general(proven.bound_v2s(), 7);
+  out.text("Proven      E <= ").general(rounded_up(proven.bound_v2s(), 6), 7);
   out.text(" V^2 s for every such signal\nGap         ").fixed(100.0 * proven.gap(), 3);
   out.text(" % of the energy reached\nRMS error   ");
   out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
-  out.general(std::sqrt(proven.bound_v2s() / duration_s), 5).text(" V\n\n");
+  out.general(rounded_up(std::sqrt(proven.bound_v2s() / duration_s), 4), 5).text(" V\n\n");
   out.text("The proof has ").integer(certificate.grid().cells).text(" cells, ");
   out.integer(certificate.used_multipliers()).text(" multipliers and ");
   out.integer(certificate.nodes().size());

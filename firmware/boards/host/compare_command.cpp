@@ -76,7 +76,7 @@ Problem parse_options(Span<const std::string_view> arguments, CompareOptions& op
   return options.paths.size() >= 2
              ? Problem{}
              : bad_input("compare: " + std::string(options.paths.empty() ? "no" : "a single") +
-                         " file; expected two results.json of emax report or more");
+                         " file; expected two or more results.json of emax report");
 }
 
 // What `remark` says is worth a line, and no reason to end otherwise.

@@ -84,10 +84,16 @@ Problem check_conditions(const Result& result, const Result& first) {
     return differ(result, first, "gain", in_digits(result.gain) + " V/(m/s^2)",
                   in_digits(first.gain) + " V/(m/s^2)", "--gain");
   }
-  return check_trials(result, first);
+  return {};
 }
 
 }  // namespace
+
+const Result& first_with_trials(const std::vector<Result>& results) noexcept {
+  const auto found = std::find_if(results.begin(), results.end(),
+                                  [](const Result& result) { return result.has_uncertainty; });
+  return found != results.end() ? *found : results.front();
+}
 
 Pair compare(const Result& first, const Result& second) noexcept {
   Pair pair;
@@ -106,6 +112,9 @@ Pair compare(const Result& first, const Result& second) noexcept {
 Problem compare_all(std::vector<Result> results, Comparison& comparison) {
   for (const Result& result : results) {
     if (Problem problem = check_conditions(result, results.front())) {
+      return problem;
+    }
+    if (Problem problem = check_trials(result, first_with_trials(results))) {
       return problem;
     }
   }

@@ -38,6 +38,9 @@ struct Comparison {
   std::vector<Pair> pairs;      ///< Each with its successor; one fewer.
 };
 
+/// @returns The first that has an uncertainty, from a Monte Carlo run; the very first if none has.
+const Result& first_with_trials(const std::vector<Result>& results) noexcept;
+
 Pair compare(const Result& first, const Result& second) noexcept;
 
 /// Compares devices that were measured under the same conditions: filter order, cut-off and gain,

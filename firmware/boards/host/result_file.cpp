@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "emax/app/version.hpp"
 #include "emax/elementary.hpp"
@@ -17,6 +18,11 @@ namespace {
 
 constexpr std::size_t kMaxFileSize = std::size_t{4} << 20;
 constexpr const char* kExpectation = "expected a results.json of emax report";
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
 
 // Takes members one by one and remembers the first that is not there.
 class Taker final {
@@ -37,6 +43,15 @@ class Taker final {
       miss(group, name, "text");
     }
     return value.text();
+  }
+
+  Interval interval(const char* group, const char* name) {
+    const std::vector<JsonValue>& ends = root_[group][name].elements();
+    if (ends.size() != 2 || !ends[0].is_number() || !ends[1].is_number()) {
+      miss(group, name, "interval");
+      return {};
+    }
+    return {ends[0].number(), ends[1].number()};
   }
 
   // "energy.E is no number", or empty.
@@ -80,11 +95,9 @@ void take_trials(const JsonValue& trials, Taker& taker, Result& result) {
   const bool is_box = result.distribution == "box";
   result.u_energy_v2s = (is_box ? sqrt(3.0) : 1.0) * taker.number("monte_carlo", "u");
   result.probability = taker.number("monte_carlo", "probability");
-  const auto& interval = trials["interval"].elements();
-  if (interval.size() == 2) {
-    result.low_v2s = interval[0].number();
-    result.high_v2s = interval[1].number();
-  }
+  const Interval interval = taker.interval("monte_carlo", "interval");
+  result.low_v2s = interval.low;
+  result.high_v2s = interval.high;
 }
 
 }  // namespace
