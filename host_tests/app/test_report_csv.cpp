@@ -175,6 +175,25 @@ TEST(ReportCsv, SignalBetweenGridPoints) {
   expect_signal(evaluated({kTable2.estimate, {}}, settings), 1);
 }
 
+TEST(ReportCsv, SignalHasRowsForEachOscillation) {
+  // 204 periods of the resonance; or 160 of the cutoff, where that is faster.
+  for (const double cutoff_hz : {1000.0, 8000.0}) {
+    Settings settings = quick_settings();
+    settings.method = emax::Method::kPaper;
+    settings.iterations = 1;
+    settings.step_s = 2e-5;
+    settings.duration_s = cutoff_hz > 4073.0 ? 0.02 : 0.05;
+    settings.cutoff_hz = cutoff_hz;
+    const Table table =
+        table_of(emax::app::write_signal_csv, evaluated({kTable2.estimate, {}}, settings));
+    EXPECT_EQ(table.rows.back()[0], settings.duration_s);
+    const double period_s = 1.0 / std::fmax(4073.0, cutoff_hz);
+    for (std::size_t i = 1; i < table.rows.size(); ++i) {
+      ASSERT_LT(table.rows[i][0] - table.rows[i - 1][0], period_s / 19.0) << i;
+    }
+  }
+}
+
 TEST(ReportCsv, Trend) {
   Settings settings = quick_settings();
   settings.trend_count = 3;

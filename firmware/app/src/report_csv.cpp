@@ -40,6 +40,16 @@ double spaced(std::size_t row, std::size_t rows, double end) noexcept {
   return row + 1 == rows ? end : end * (static_cast<double>(row) / static_cast<double>(rows - 1));
 }
 
+/// No curve may be a pattern of its rows.
+std::size_t signal_rows(const Evaluation& evaluation) noexcept {
+  constexpr double kRowsPerPeriod = 20.0;
+  const double f0_hz = evaluation.device().estimate.natural_frequency_hz;
+  const double cutoff_hz = evaluation.settings().cutoff_hz;
+  const double periods = (f0_hz > cutoff_hz ? f0_hz : cutoff_hz) * evaluation.settings().duration_s;
+  const auto rows = static_cast<std::size_t>(kRowsPerPeriod * periods) + 1;
+  return rows > kSignalRows ? rows : kSignalRows;
+}
+
 void write_signal_row(const Evaluation& evaluation, double time_s, double sign,
                       TextWriter& out) noexcept {
   const double row[] = {time_s, sign * evaluation.limit_mps2(), evaluation.output_v(time_s)};
@@ -97,8 +107,9 @@ void write_signal_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
   const double end_s = evaluation.settings().duration_s;
   double sign = 1.0;
   std::size_t next = 0;
-  for (std::size_t i = 0; i < kSignalRows; ++i) {
-    const double time_s = spaced(i, kSignalRows, end_s);
+  const std::size_t rows = signal_rows(evaluation);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double time_s = spaced(i, rows, end_s);
     for (; next < switches_s.size() && switches_s[next] <= time_s; ++next) {
       write_signal_row(evaluation, switches_s[next], sign, out);
       sign = -sign;

@@ -31,19 +31,8 @@ std::string conditions_of(const Result& first) {
   out.general(first.limit_mps2, 6).text(" m/s², filter of order ").general(first.order, 3);
   out.text(", ").general(first.cutoff_hz, 6).text(" Hz, ");
   out.text(first.criterion == "ise" ? "integral-square error" : "energy difference");
+  out.text(first.method == "paper" ? ", paper's method" : "");
   return sink.text();
-}
-
-// Whole characters of UTF-8 only: what follows the first byte of one goes with it.
-std::string shortened(const std::string& name) {
-  if (name.size() <= kNameShown) {
-    return name;
-  }
-  std::size_t end = kNameShown;
-  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0U) == 0x80U) {
-    --end;
-  }
-  return name.substr(0, end) + "...";
 }
 
 void write_heading(const std::string& text, double height, TextWriter& out) {
@@ -55,7 +44,7 @@ void write_marks(const Comparison& comparison, std::size_t rows, TextWriter& out
   out.text("set ytics (");
   for (std::size_t i = 0; i < rows; ++i) {
     const std::string name =
-        text_of(comparison.ranks[i]) + "  " + shortened(name_of(comparison.results[i]));
+        text_of(comparison.ranks[i]) + "  " + shortened(name_of(comparison.results[i]), kNameShown);
     out.text(i == 0 ? "" : ", ").text(gnuplot_string(name).c_str()).text(" ").integer(i + 1);
   }
   out.text(")\n");
@@ -83,7 +72,7 @@ void write_numbers(const Comparison& comparison, std::size_t rows, TextWriter& o
 void write_comparison_script(const Comparison& comparison, TextWriter& out) {
   const std::size_t rows = std::min(comparison.results.size(), kMostRows);
   out.text("# Draws the comparison: gnuplot ").text(kComparisonScript).text("\n");
-  out.text("set encoding utf8\nset terminal svg noenhanced font 'sans-serif,15' ");
+  out.text("set encoding utf8\nset minussign\nset terminal svg noenhanced font 'sans-serif,15' ");
   out.text("background '#ffffff' fixed size 900,").integer(kFrameHeight + kRowHeight * rows);
   out.text("\nset output '").text(kComparisonPicture).text("'\n");
   // In pixels from the top and the bottom, whatever the number of rows.
@@ -93,7 +82,7 @@ void write_comparison_script(const Comparison& comparison, TextWriter& out) {
   out.text("set tmargin at screen ").exact(1.0 - 70.0 / height);
   out.text("\nset bmargin at screen ").exact(118.0 / height);
   out.text("\nset key center at screen 0.5, screen ").exact(26.0 / height);
-  out.text(" vertical maxrows 2\nset xlabel 'E_max in mV² s'\nset yrange [");
+  out.text(" vertical maxrows 2\nset xlabel 'E in mV² s'\nset yrange [");
   out.integer(rows).text(".6:0.4]\nset offsets graph 0.05, graph 0.05, 0, 0\n");
   out.text("set grid x lc '#c0c0c0'\nset bars 1.5\n");
   write_marks(comparison, rows, out);

@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "html_markup.hpp"
+#include "rounding.hpp"
 
 namespace emax::host {
 
@@ -45,6 +46,7 @@ h1 { margin: 0 0 .2rem; font-size: 1.7rem; line-height: 1.2; }
 h2 { margin: 2.2rem 0 .5rem; padding-top: .6rem; border-top: 1px solid var(--line); font-size: 1.25rem; }
 p { margin: .6rem 0; }
 .about { color: var(--soft); }
+#title .about { white-space: pre-line; }
 .headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(14rem, 1fr)); gap: .8rem 1.5rem;
   margin: 1rem 0; padding: 1rem; border: 2px solid var(--text); }
 .headline div { min-width: 0; }
@@ -76,7 +78,8 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   body { max-width: none; padding: 0; }
   figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figure svg { max-height: 85mm; }
-  h1, h2, h2 + .about, thead { break-after: avoid; }
+  #fit svg { max-height: 120mm; }
+  h1, h2, h2 + p, thead { break-after: avoid; }
   figure, .wide, .numbers tr, .headline, .warning, .note { break-inside: avoid; }
   .warning { border: 1.5pt solid #000000; }
   .wide { overflow: visible; }
@@ -171,8 +174,10 @@ class Pictures final : public SectionEnd {
 // calls for.
 class EnergyFormat {
  public:
+  static constexpr int kDecimalsAlone = 4;
+
   EnergyFormat(double energy, double u)
-      : exponent_(energy != 0.0 ? exponent_of(energy) : 0), decimals_(4) {
+      : exponent_(energy != 0.0 ? exponent_of(energy) : 0), decimals_(kDecimalsAlone) {
     constexpr int kMostDecimals = 12;
     if (u > 0.0) {
       decimals_ = std::clamp(exponent_ - exponent_of(u) + 2, 3, kMostDecimals);
@@ -205,9 +210,11 @@ void append_figure(std::string& html, const char* kind, const std::string& name,
 
 void append_energies(std::string& html, const Evaluation& evaluation) {
   const double energy = evaluation.energy_v2s();
+  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  const std::string largest = is_ise ? "Largest energy of the error" : "Largest energy difference";
   if (!evaluation.has_monte_carlo()) {
     const EnergyFormat format(energy, 0.0);
-    append_figure(html, " class=\"first\"", "Largest energy of the error, E<sub>max</sub>",
+    append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
                   format.number(energy) + format.unit());
     append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
@@ -215,7 +222,7 @@ void append_energies(std::string& html, const Evaluation& evaluation) {
   const MonteCarloResult result = evaluation.monte_carlo().result();
   const EnergyFormat format(result.maximum, result.u);
   append_figure(html, " class=\"first\"",
-                "Largest energy of the error within the device's uncertainty, E<sub>max</sub>",
+                largest + " within the device's uncertainty, E<sub>max</sub>",
                 format.number(result.maximum) + format.unit());
   append_figure(html, "", "At the estimates, E", format.number(energy) + format.unit());
   append_figure(html, "", "Standard uncertainty u(E)", format.number(result.u) + format.unit());
@@ -231,7 +238,9 @@ void append_rms(std::string& html, const Evaluation& evaluation) {
     return;
   }
   const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
-  append_figure(html, "", "rms error at the estimates", words_of([&](TextWriter& out) {
+  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  const char* name = is_ise ? "rms error at the estimates" : "√(E/T) at the estimates";
+  append_figure(html, "", name, words_of([&](TextWriter& out) {
                   out.general(evaluation.rms_error_v(), 5).text(" V = ");
                   out.general(kPercent * evaluation.rms_error_v() / full, 4).text(" % of S a");
                 }));
@@ -241,7 +250,8 @@ void append_bound(std::string& html, const Evaluation& evaluation) {
   if (evaluation.has_bound()) {
     const EnergyFormat format(evaluation.bound_v2s(), 0.0);
     append_figure(html, "", "Proven at the estimates: no signal has more than",
-                  format.number(evaluation.bound_v2s()) + format.unit());
+                  format.number(rounded_up(evaluation.bound_v2s(), EnergyFormat::kDecimalsAlone)) +
+                      format.unit());
   }
 }
 
@@ -259,7 +269,9 @@ void append_conditions(std::string& html, const Evaluation& evaluation, bool in_
         out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(" with a cutoff of ");
         out.general(settings.cutoff_hz, 7).text(" Hz; ");
         const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
-        out.text(is_ise ? "integral-square error." : "energy difference.");
+        out.text(is_ise ? "integral-square error" : "energy difference");
+        const bool is_paper = settings.method == Method::kPaper;
+        out.text(is_paper ? ", by the paper's method: other signals may reach more." : ".");
       }) +
       "</p>\n";
 }

@@ -57,17 +57,22 @@ std::string filter_of(const Evaluation& evaluation) {
   });
 }
 
-std::string conditions_of(const Evaluation& evaluation, bool with_time) {
+std::string conditions_of(const Evaluation& evaluation, bool with_time, bool in_g) {
   const app::Settings& settings = evaluation.settings();
   const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   return words_of([&](TextWriter& out) {
     if (with_time) {
       out.text("T = ").general(kMilli * settings.duration_s, 6).text(" ms, ");
     }
-    out.text("a = ").general(evaluation.limit_mps2(), 5).text(" m/s², filter of order ");
+    out.text("a = ").general(evaluation.limit_mps2(), 5).text(" m/s²");
+    if (in_g) {
+      out.text(" (").general(evaluation.limit_mps2() / app::kStandardGravity_mps2, 5).text(" g)");
+    }
+    out.text(", filter of order ");
     out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(", ");
     out.general(settings.cutoff_hz, 6).text(" Hz, ");
     out.text(is_ise ? "integral-square error" : "energy difference");
+    out.text(settings.method == Method::kPaper ? ", paper's method" : "");
   });
 }
 
@@ -85,7 +90,10 @@ std::string energy_of(const Evaluation& evaluation) {
     out.text("E = ").scientific(energy, 4).text(" V² s");
     if (energy >= 0.0) {
       const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
-      out.text(", rms error ").general(evaluation.rms_error_v(), 4).text(" V = ");
+      const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+      out.text(is_ise ? ", rms error " : ", √(E/T) = ")
+          .general(evaluation.rms_error_v(), 4)
+          .text(" V = ");
       out.general(kPercent * evaluation.rms_error_v() / full, 4).text(" % of S·a");
     }
   });
@@ -105,7 +113,7 @@ std::string line_of(const Evaluation& evaluation) {
   const Trend& trend = evaluation.trend();
   return words_of([&](TextWriter& out) {
     out.text("line: E = ").general(trend.slope, 5).text(" V² · T ");
-    out.text(trend.intercept < 0.0 ? "- " : "+ ").general(std::abs(trend.intercept), 4);
+    out.text(trend.intercept < 0.0 ? "− " : "+ ").general(std::abs(trend.intercept), 4);
     out.text(" V² s, correlation ").fixed(trend.correlation, 6);
   });
 }
@@ -171,7 +179,7 @@ int decimals_of_axis(double length) {
 // What each picture starts from, whatever the one before it has set.
 void write_start(TextWriter& out, const Picture& picture, int height) {
   out.text(
-      "\nreset\nset border lw 1\nset grid lc '#c8c8c8' lw 1 dt (2,3)\n"
+      "\nreset\nset minussign\nset border lw 1\nset grid lc '#c8c8c8' lw 1 dt (2,3)\n"
       "set xzeroaxis lt 1 lc '#808080' lw 1\nset xlabel offset 0,0.3\nset "
       "pointintervalbox 0\n"
       "set datafile separator ','\n"
@@ -354,7 +362,7 @@ void write_impulse_response(const Picture& picture, const Evaluation& evaluation
   write_value(out, "ks", response.factor);
   out.text("set xrange [0:").exact(time.factor * end_s);
   out.text("]\nset bmargin 4.9\nset key bmargin center horizontal Left reverse\n");
-  if (settling.found && settling.time_s < end_s) {
+  if (settling.found && settling.time_s <= end_s) {
     out.text("set arrow 1 from ").exact(time.factor * settling.time_s);
     out.text(", graph 0 rto graph 0, graph 1 nohead lc '#606060' dt (6,4)\nset label 1 ");
     // On the side where there is room.
@@ -378,8 +386,8 @@ void write_signal(const Picture& picture, const Evaluation& evaluation, TextWrit
   const Scale acceleration = scaled(limit, "m/s²");
   const double shown_limit = acceleration.factor * limit;
   write_start(out, picture, 560);
-  const std::string title =
-      title_lines(picture.title, energy_of(evaluation), conditions_of(evaluation, true));
+  const std::string title = title_lines(picture.title, energy_of(evaluation),
+                                        conditions_of(evaluation, true, picture.in_g));
   out.text("set multiplot title ").text(title.c_str()).line();
   write_value(out, "ts", time.factor);
   write_value(out, "ys", error.factor);
@@ -437,8 +445,8 @@ void write_histogram(const Picture& picture, const Evaluation& evaluation, TextW
   const MonteCarloResult result = evaluation.monte_carlo().result();
   const EnergyAxis axis = histogram_axis(evaluation);
   write_start(out, picture, 480);
-  const std::string title =
-      title_lines(picture.title, trials_of(evaluation), conditions_of(evaluation, true));
+  const std::string title = title_lines(picture.title, trials_of(evaluation),
+                                        conditions_of(evaluation, true, picture.in_g));
   out.text("set title ").text(title.c_str()).line();
   write_value(out, "Es", axis.scale.factor);
   write_value(out, "origin", axis.origin);
@@ -474,23 +482,30 @@ void write_trend(const Picture& picture, const Evaluation& evaluation, TextWrite
   const Scale time = time_scale(last_s);
   const Scale energy = scaled(limit * limit * points[points.size() - 1].energy, "V² s");
   write_start(out, picture, 480);
-  const std::string title =
-      title_lines(picture.title, line_of(evaluation), conditions_of(evaluation, false));
+  const std::string title = title_lines(picture.title, line_of(evaluation),
+                                        conditions_of(evaluation, false, picture.in_g));
   out.text("set title ").text(title.c_str()).line();
   write_value(out, "ts", time.factor);
   write_value(out, "Es", energy.factor);
   write_axis(out, "x", "length T of the signal", time.unit);
   write_axis(out, "y", "E", energy.unit);
   out.text("set xrange [0:").exact(1.05 * time.factor * last_s).text("]\n");
-  out.text("set yrange [*<0:0<*]\nset key top left Left reverse\n");
+  out.text("set yrange [*<0:0<*]\nset offsets 0, 0, graph 0.1, 0\n");
+  // Where the line does not go.
+  out.text(evaluation.trend().slope < 0.0 ? "set key top right" : "set key top left");
+  out.text(" Left reverse\n");
+  // Of the report's own T, which need not be among those of the trend.
+  out.text("$report << END\n").exact(duration_s).text(",").exact(evaluation.energy_v2s());
+  out.text(",");
   if (evaluation.has_bound()) {
-    out.text("$bound << END\n").exact(duration_s).text(",").exact(evaluation.bound_v2s());
-    out.text("\nEND\n");
+    out.exact(evaluation.bound_v2s());
   }
+  out.text("\nEND\n");
   out.text("plot 'trend.csv' skip 1 using ($1*ts):($3*Es) with lines ls 2 ");
   out.text("title 'straight line', \\\n");
+  out.text("  $report using ($1*ts):($2*Es) with points ls 6 notitle, \\\n");
   if (evaluation.has_bound()) {
-    out.text("  $bound using ($1*ts):($2*Es) with points ls 5 ");
+    out.text("  $report using ($1*ts):($3*Es) with points ls 5 ");
     out.text("title 'proven: no signal has more', \\\n");
   }
   out.text("  'trend.csv' skip 1 using ($1*ts):($2*Es) with points ls 6 ");
@@ -531,9 +546,9 @@ constexpr Kind kKinds[] = {
      "The error system k is the sensor's response less that of the reference filter. From where "
      "it has settled on, a longer signal adds little that is new.",
      always, write_impulse_response},
-    {kPictureFiles[2], app::ReportSection::kEnergy, "the signal with the largest error",
-     "Above: the signal within ±a whose error has the most energy; it only ever switches between "
-     "the limits. Below: that error, the sensor's output less that of the reference filter.",
+    {kPictureFiles[2], app::ReportSection::kEnergy, "the worst signal found",
+     "Above: the signal within ±a with the largest E that was found; it only ever switches between "
+     "the limits. Below: its error, the sensor's output less that of the reference filter.",
      always, write_signal},
     {kPictureFiles[3], app::ReportSection::kMonteCarlo, "energy within the uncertainties",
      "How often the Monte Carlo trials came to which energy. The dark part is within the coverage "
@@ -553,12 +568,13 @@ std::string name_of_device(const app::Labels& labels) {
 
 }  // namespace
 
-std::vector<Picture> pictures_of(const Evaluation& evaluation, const app::Labels& labels) {
+std::vector<Picture> pictures_of(const Evaluation& evaluation, const app::ReportContext& context) {
   std::vector<Picture> pictures;
-  const std::string name = name_of_device(labels);
+  const std::string name = name_of_device(context.labels);
   for (const Kind& kind : kKinds) {
     if (kind.exists(evaluation)) {
-      pictures.push_back({kind.file, kind.section, name + ": " + kind.title, kind.caption});
+      pictures.push_back(
+          {kind.file, kind.section, name + ": " + kind.title, kind.caption, context.in_g});
     }
   }
   return pictures;

@@ -15,6 +15,7 @@ struct Picture {
   app::ReportSection section;
   std::string title;    ///< With the device's name, in one line.
   std::string caption;  ///< What to look at.
+  bool in_g = false;    ///< Accelerations also in standard gravity.
 };
 
 inline constexpr const char* kPictureScript = "pictures.gp";
@@ -24,7 +25,8 @@ inline constexpr const char* kPictureFiles[] = {"frequency_response.svg", "impul
 
 /// @param[in] evaluation With the stage kDone.
 /// @returns The pictures that there are numbers for, in the order of the report.
-std::vector<Picture> pictures_of(const app::Evaluation& evaluation, const app::Labels& labels);
+std::vector<Picture> pictures_of(const app::Evaluation& evaluation,
+                                 const app::ReportContext& context);
 
 /// Writes the script for gnuplot 5.4 that draws these pictures from the tables beside it.
 void write_picture_script(const std::vector<Picture>& pictures, const app::Evaluation& evaluation,

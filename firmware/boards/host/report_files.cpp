@@ -59,7 +59,7 @@ void drop_pictures(OutputFiles& files) {
 Problem add_pictures(const app::Evaluation& evaluation, const app::ReportContext& context,
                      OutputFiles& files, std::vector<PagePicture>& shown, Problem& remark) {
   drop_pictures(files);
-  const std::vector<Picture> pictures = pictures_of(evaluation, context.labels);
+  const std::vector<Picture> pictures = pictures_of(evaluation, context);
   Problem problem = files.add(kPictureScript, [&](app::TextWriter& out) {
     write_picture_script(pictures, evaluation, out);
   });
