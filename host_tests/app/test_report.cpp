@@ -215,6 +215,30 @@ TEST(Report, ShortTimeIsNoted) {
   EXPECT_TRUE(says(report_of(evaluated(kTable2, settings)), "T is shorter"));
 }
 
+TEST(Report, ALineThatDescribesNothingIsNoted) {
+  Settings settings = quick_settings();
+  settings.trend_count = 3;
+  EXPECT_FALSE(says(report_of(evaluated(kTable2, settings)), "not linear"));
+  // While a device with hardly any damping builds up its oscillation, E grows as the cube of T.
+  emax::app::Device ringing = kTable2;
+  ringing.estimate.damping = 0.001;
+  ringing.u.damping = 1e-6;
+  const std::string report = report_of(evaluated(ringing, settings));
+  expect_well_formed(report);
+  EXPECT_TRUE(says(report, "Note: E is not linear in T here"));
+  // A line that falls is one, too: nearly all the energy difference is that of the filter.
+  settings.criterion = Criterion::kEnergyDifference;
+  settings.method = Method::kPaper;
+  settings.gain_mode = GainMode::kFixed;
+  settings.gain = 10.0;
+  settings.step_s = 0.001;
+  settings.cutoff_hz = 10000.0;
+  settings.filter_order = 1;
+  const std::string falling = report_of(evaluated({kTable2.estimate, {}}, settings));
+  EXPECT_TRUE(says(line_with(falling, "Correlation"), " -0.99")) << falling;
+  EXPECT_FALSE(says(falling, "not linear"));
+}
+
 TEST(Report, OtherSettings) {
   Settings settings = quick_settings();
   settings.criterion = Criterion::kEnergyDifference;
@@ -226,6 +250,7 @@ TEST(Report, OtherSettings) {
   const std::string report = report_of(evaluated(kTable2, settings));
   expect_well_formed(report);
   EXPECT_TRUE(says(line_with(report, "Criterion"), "energy difference"));
+  EXPECT_FALSE(says(report, "rms error"));
   EXPECT_TRUE(says(line_with(report, "Filter gain"), "in each trial that trial's S"));
   EXPECT_TRUE(says(line_with(report, "Limit a"), "9.81 m/s^2, as given"));
   EXPECT_TRUE(says(report, "1982, seed 123456789,345678901,567890123\n"));

@@ -45,8 +45,8 @@ constexpr char kTooManyCellsPaper[] =
     "The grid of the paper's step needs more than " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells for this time; shorten it or take a "
     "longer step.";
 constexpr char kTooManyCellsTrials[] =
-    "The trials of the paper's method have room for 6162 cells; shorten the time, take a longer "
-    "step, or give no uncertainties.";
+    "The trials of the paper's method have no room for so many cells; shorten the time, take a "
+    "longer step, or give no uncertainties.";
 constexpr char kTooManySwitches[] =
     "The best signal changes sign more than " EMAX_TEXT_OF(EMAX_MAX_SWITCHES) " times, more than the table holds; shorten the "
     "time.";

@@ -130,8 +130,8 @@ void write_flagged(const Sweep& sweep, ReportWriter& out) noexcept {
     }
     out.indent().general(point.point.frequency_hz, 7);
     if (point.scatters) {
-      out.text(" Hz: the repeats differ by more than chance, ");
-      out.fixed(kPercent * point.budget.noise, 4).text(" % remain of it in their mean").line();
+      out.text(" Hz: the repeats differ by more than chance, u ");
+      out.fixed(kPercent * point.budget.noise, 4).text(" % of the mean").line();
     } else {
       out.text(" Hz: distorted, the sine leaves ").fixed(point.residual_percent, 2);
       out.text(" % of the amplitude over").line();

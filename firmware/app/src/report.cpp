@@ -15,6 +15,9 @@ constexpr std::size_t kResidualsShown = 10;
 constexpr std::size_t kFrequencyWidth = 2 + kLabelWidth + 13;
 constexpr std::size_t kTraceShown = 12;
 constexpr std::size_t kTimesPerLine = 6;
+constexpr double kLeastCorrelationShown = 0.0005;  // Less would be -0.000.
+// Below it the energies leave a line by 4 % of their range or more.
+constexpr double kLeastTrendCorrelation = 0.999;
 constexpr double kQuantile99 = 2.326347874040841;  // Of N(0, 1) at 99 %.
 constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
@@ -228,8 +231,9 @@ void write_correlations(const Evaluation& evaluation, ReportWriter& out) noexcep
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     for (std::size_t j = i + 1; j < kWlspParameters; ++j) {
       const double scale = sqrt(evaluation.covariance(i, i) * evaluation.covariance(j, j));
+      const double r = evaluation.covariance(i, j) / scale;
       out.text(i + j == 1 ? "" : ", ").text("r(").text(kParameterNames[i]).text(",");
-      out.text(kParameterNames[j]).text(") = ").fixed(evaluation.covariance(i, j) / scale, 3);
+      out.text(kParameterNames[j]).text(") = ").fixed(abs(r) < kLeastCorrelationShown ? 0.0 : r, 3);
     }
   }
   out.line();
@@ -432,7 +436,7 @@ void write_bound(const Evaluation& evaluation, ReportWriter& out) noexcept {
       .line();
   if (energy > 0.0) {
     out.label("Gap").general(kPercent * (bound - energy) / energy, 4);
-    out.text(" % of E, between which the true maximum lies").line();
+    out.text(" % of E; the true maximum lies between the two").line();
   }
 }
 
@@ -446,7 +450,8 @@ void write_energy(const Evaluation& evaluation, ReportWriter& out) noexcept {
     out.text(" (").general(square(kStandardGravity_mps2) * evaluation.xi(), 7).text(" (V/g)^2)");
   }
   out.line();
-  out.label("rms error sqrt(E/T)");
+  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  out.label(is_ise ? "rms error sqrt(E/T)" : "sqrt(E/T)");
   if (energy >= 0.0) {
     const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
     const double rms = evaluation.rms_error_v();
@@ -590,6 +595,10 @@ void write_trend(const Evaluation& evaluation, ReportWriter& out) noexcept {
   out.text(trend.intercept < 0.0 ? "- " : "+ ").general(abs(trend.intercept), 7).text(" V^2 s");
   out.line();
   out.label("Correlation").fixed(trend.correlation, 7).line();
+  if (abs(trend.correlation) < kLeastTrendCorrelation) {
+    out.part(ReportPart::kNote)
+        .text("  Note: E is not linear in T here; the line says nothing about other lengths.\n");
+  }
 }
 
 }  // namespace
@@ -623,6 +632,9 @@ void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept {
   out.text(failure.reason);
   if (failure.duration_s > 0.0) {
     out.text(" (T = ").general(failure.duration_s, 10).text(" s)");
+  }
+  if (failure.status == Status::kTooManyCells && failure.stage == Stage::kMonteCarlo) {
+    out.text(" (The room is for ").integer(GridWorkspace::kMaxTrialCells).text(" cells.)");
   }
   if (failure.stage != Stage::kFitDraws) {
     return;

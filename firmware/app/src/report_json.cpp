@@ -282,7 +282,7 @@ void write_trend(const Evaluation& evaluation, JsonWriter& json) noexcept {
 
 void write_label(const char* name, const char* words, JsonWriter& json) noexcept {
   if (words != nullptr) {
-    json.quote(name, words);
+    json.words(name, words);
   } else {
     json.null(name);
   }

@@ -33,8 +33,8 @@ void write_report(const Evaluation& evaluation, const ReportContext& context, Te
 /// With a measurement there is an object `bench`. Its `common`, `budget` and `truth` are relative
 /// standard uncertainties and the truth of a simulated bench; a row of `budget` is frequency,
 /// noise, quantisation, hum, distortion, phase (rad); percentages are expanded (k = 2). With a
-/// label there is an object `labels` of all five, null for those not given. Names are those of
-/// bytes, labels those of UTF-8, U+FFFD for what is not valid.
+/// label there is an object `labels` of all five, null for those not given. Names and labels are
+/// read as UTF-8; U+FFFD stands for what is not valid.
 ///
 /// @param[in] evaluation With the stage kDone.
 /// @param[in] context    As for the report.
@@ -58,7 +58,8 @@ void write_frequency_response_csv(const Evaluation& evaluation, TextWriter& out)
 void write_impulse_response_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
 inline constexpr std::size_t kResponseRows = 1001;
 
-/// t_s,x_mps2,y_v: kSignalRows rows from 0 to T, and two for each switch, before and after it.
+/// t_s,x_mps2,y_v: equally spaced rows from 0 to T, kSignalRows or as many as give the fastest
+/// oscillation 20 rows per period, and two for each switch, before and after it.
 void write_signal_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
 inline constexpr std::size_t kSignalRows = 2001;
 
