@@ -301,6 +301,7 @@ class Evaluation {
   void drop_trend() noexcept;
   Failure check_goal(const Settings& settings, Goal goal) const noexcept;
   Failure check_box(const Settings& settings, Goal goal) const noexcept;
+  static const char* width_reason(Distribution distribution) noexcept;
   Status check_grid(const Settings& settings, double duration_s) const noexcept;
   Failure search_failure(Status status, Stage stage, double duration_s) const noexcept;
   Status fail(Status status, Stage stage, const char* reason, double duration_s = 0.0) noexcept;
