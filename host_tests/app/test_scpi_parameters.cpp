@@ -286,6 +286,10 @@ TEST(ScpiParameters, NumberOrWord) {
   EXPECT_EQ(console.toy.gain, 1.037);
   EXPECT_EQ(error_of(console, "CALC:FILT:GAIN MAX"), 0);
   EXPECT_EQ(console.toy.gain, 100.0);
+  EXPECT_EQ(console.ask("CALC:FILT:GAIN?;GAIN? MIN;GAIN? MAX;GAIN? DEF\n"), "100;0;100;AUTO\n");
+  EXPECT_EQ(console.ask("CALC:FILT:GAIN TRAC;GAIN?;GAIN DEF;GAIN?\n"), "TRAC;AUTO\n");
+  EXPECT_EQ(error_of(console, "CALC:FILT:GAIN? 5"), -128);
+  EXPECT_EQ(error_of(console, "CALC:FILT:GAIN 100"), 0);
   EXPECT_EQ(error_of(console, "CALC:FILT:GAIN TRA"), -141);
   EXPECT_EQ(error_of(console, "CALC:FILT:GAIN 101"), -222);
   EXPECT_EQ(console.toy.gain, 100.0);
@@ -396,6 +400,21 @@ TEST(ScpiResponse, IntegersAndWords) {
             "ISE,DIFF,0");
   EXPECT_EQ(answer([](Response& out) { out.string(Span<const char>("a\"b", 3)).integer(1); }),
             "\"a\"\"b\",1");
+}
+
+// SCPI-99, volume 2, 21.8.1: the standard's text, a semicolon, and what the instrument adds.
+TEST(ScpiResponse, Errors) {
+  emax::app::scpi::ErrorEntry entry;
+  entry.code = emax::app::scpi::ErrorCode::kSettingsConflict;
+  EXPECT_EQ(answer([&](Response& out) { out.error(entry); }), "\"Settings conflict\"");
+  entry.words = "as \"fast\" as it goes";
+  EXPECT_EQ(answer([&](Response& out) { out.error(entry); }),
+            "\"Settings conflict;as \"\"fast\"\" as it goes\"");
+  const std::string words(200, 'w');
+  entry.words = words.c_str();
+  entry.subject = "slew";
+  EXPECT_EQ(answer([&](Response& out) { out.error(entry); }),
+            "\"Settings conflict;slew: " + words + "\"");
 }
 
 // IEEE 488.2, 8.7.9.

@@ -180,13 +180,13 @@ TEST(ScpiSession, SlowReader) {
 TEST(ScpiSession, LineOfTenKilobytes) {
   ToyConsole console;
   EXPECT_EQ(console.ask("*RST;" + std::string(10240, 'A') + "\n*IDN?\n"), kIdentity);
-  EXPECT_EQ(console.error(), "-363,\"Input buffer overrun\"\n");
+  EXPECT_EQ(console.error(), "-363,\"Input buffer overrun;a line has 4096 characters at most\"\n");
   EXPECT_EQ(console.error(), "0,\"No error\"\n");
   EXPECT_EQ(console.toy.log, "");
   const std::string full = "*ESE " + std::string(InputBuffer::kCapacity - 6, ' ') + "4";
   EXPECT_EQ(console.ask(full + "\n*ESE?\n"), "4\n");
   EXPECT_EQ(console.ask(full + " \n*ESE?\n"), "4\n");
-  EXPECT_EQ(console.error(), "-363,\"Input buffer overrun\"\n");
+  EXPECT_EQ(console.error(), "-363,\"Input buffer overrun;a line has 4096 characters at most\"\n");
 }
 
 TEST(ScpiSession, NulAndNoise) {
@@ -252,7 +252,7 @@ TEST(ScpiSession, ImmediateCommandsOvertake) {
   ToyConsole console;
   EXPECT_EQ(console.ask("INIT;*OPC?\n*RST\nSYST:PROG?\n"), "50\n");
   EXPECT_EQ(console.ask("ABCD\nSYST:ERR?\n*STB?;*ESR?\n"), "0,\"No error\"\n0;128\n");
-  EXPECT_EQ(console.ask("*ESE 32;SRE 1\n"), "");
+  EXPECT_EQ(console.ask("SRE 1;*ESE 32\n"), "");
   EXPECT_EQ(console.toy.log, "I");
   EXPECT_EQ(console.ask("STAT:OPER:COND?;ENAB 16;ENAB?;*ESE?\n"), "0;16;0\n");
   EXPECT_EQ(console.ask("ABOR\n"), "1\n");
@@ -261,14 +261,25 @@ TEST(ScpiSession, ImmediateCommandsOvertake) {
             "-113,\"Undefined header;ABCD\"\n-113,\"Undefined header;SRE\"\n");
 }
 
-// The whole message must be immediate.
+// A query keeps its whole message in its place, and a unit that is not immediate what is behind it.
 TEST(ScpiSession, MixedMessagesDoNotOvertake) {
   ToyConsole console;
-  EXPECT_EQ(console.ask("INIT;*OPC?\nABOR;*IDN?\n*IDN?;ABOR\nABOR 1\n"), "");
+  EXPECT_EQ(console.ask("INIT;*OPC?\nSYST:PROG?;*IDN?\n;*IDN?;ABOR\nSTAT:OPER:ENAB 16;FOO\n"), "");
+  EXPECT_EQ(console.ask("STAT:OPER:ENAB?\n"), "0\n") << "what follows hangs on this path";
   EXPECT_EQ(console.toy.log, "I");
   console.toy.is_busy = false;
-  EXPECT_EQ(console.ask(""), std::string("1\n") + kIdentity + kIdentity);
-  EXPECT_EQ(console.toy.log, "IAA");
+  EXPECT_EQ(console.ask(""), std::string("1\n100;") + kIdentity + kIdentity);
+  EXPECT_EQ(console.toy.log, "IA");
+}
+
+TEST(ScpiSession, TheImmediateFrontOfAMessageOvertakes) {
+  ToyConsole console;
+  EXPECT_EQ(console.ask("INIT;*OPC?\n*IDN?\nABOR;*ESE 4;*IDN?;*RST\n"),
+            std::string("1\n") + kIdentity + kIdentity);
+  EXPECT_EQ(console.toy.log, "IAR");
+  EXPECT_EQ(console.ask("INIT;*OPC?\nABOR;;NO:SUCH\n"), "1\n");
+  EXPECT_EQ(console.error(), "-113,\"Undefined header;NO:SUCH\"\n");
+  EXPECT_TRUE(console.session.consistent());
 }
 
 TEST(ScpiSession, LongMessagesDoNotOvertake) {

@@ -130,6 +130,8 @@ TEST(ScpiErrorQueue, Overflow) {
     push(queue, -100 - i % 50, "x");
     ASSERT_TRUE(queue.consistent());
   }
+  EXPECT_FALSE(queue.push(ErrorCode::kSettingsConflict, "slew", "more"));
+  ASSERT_TRUE(queue.consistent());
   ASSERT_EQ(queue.size(), ErrorQueue::kCapacity);
   for (int i = 0; i < static_cast<int>(ErrorQueue::kCapacity) - 1; ++i) {
     EXPECT_EQ(static_cast<int>(queue.pop().code), -100 - i);
@@ -137,6 +139,7 @@ TEST(ScpiErrorQueue, Overflow) {
   const ErrorEntry last = queue.pop();
   EXPECT_EQ(last.code, ErrorCode::kQueueOverflow);
   EXPECT_EQ(context_of(last), "");
+  EXPECT_EQ(last.words, nullptr);
   EXPECT_TRUE(queue.empty());
   push(queue, -113);
   EXPECT_EQ(queue.pop().code, ErrorCode::kUndefinedHeader);
@@ -273,8 +276,13 @@ TEST(ScpiStatusModel, ErrorsWithWords) {
   StatusModel status;
   status.report(ErrorCode::kInitIgnored, "a sweep is running");
   status.report(ErrorCode::kInitIgnored);
-  EXPECT_EQ(context_of(status.take_error()), "a sweep is running");
-  EXPECT_EQ(context_of(status.take_error()), "");
+  status.report(ErrorCode::kSettingsConflict, "100 V/s or more", "slew");
+  EXPECT_STREQ(status.take_error().words, "a sweep is running");
+  EXPECT_EQ(status.take_error().words, nullptr);
+  const ErrorEntry last = status.take_error();
+  EXPECT_STREQ(last.words, "100 V/s or more");
+  EXPECT_STREQ(last.subject, "slew");
+  EXPECT_EQ(context_of(last), "");
 }
 
 TEST(ScpiStatusCommands, EventStatus) {

@@ -335,6 +335,7 @@ TEST(ScpiUnit, HeadersThatAreNotWellFormed) {
       {"A,1", ErrorCode::kHeaderSeparatorError},
       {"A#H1", ErrorCode::kHeaderSeparatorError},
       {"A??", ErrorCode::kHeaderSeparatorError},
+      {"A?MAX", ErrorCode::kHeaderSeparatorError},
       {"ABCDEFGHIJKLM", ErrorCode::kProgramMnemonicTooLong},
       {"A:ABCDEFGHIJKLM?", ErrorCode::kProgramMnemonicTooLong},
       {"ABCDEFGHIJKL:ABCDEFGHIJK1", ErrorCode::kNoError},

@@ -111,12 +111,8 @@ inline void order(Toy& toy, Call& call) noexcept {
 
 inline void gain(Toy& toy, Call& call) noexcept {
   static constexpr const char* kWords[] = {"AUTO", "TRACk"};
-  if (call.is_query()) {
-    call.answer().number(toy.gain);
-    return;
-  }
-  app::scpi::NumberOrWord value;
-  if (call.number_or_word({0.0, 100.0, 1.0, nullptr}, kWords, value)) {
+  app::scpi::NumberOrWord value{toy.gain, toy.gain_word};
+  if (call.number_or_word_setting({0.0, 100.0, __builtin_nan(""), nullptr}, kWords, value, value)) {
     toy.gain = value.number;
     toy.gain_word = value.word;
   }
@@ -280,7 +276,7 @@ inline constexpr app::scpi::Command<Toy> kCommands[] = {
     {"[SENSe:]SWEep:CYCLes", Forms::kSetAndQuery, "<n>", "", kQueryLimits, order},
     {"SOURce:LEVel", Forms::kSetAndQuery, "<a>", "", kQueryLimits, level},
     {"CALCulate:FILTer:ORDer", Forms::kSetAndQuery, "<n>", "", kQueryLimits, order},
-    {"CALCulate:FILTer:GAIN", Forms::kSetAndQuery, "<g>|AUTO|TRACk", "", kPlain, gain},
+    {"CALCulate:FILTer:GAIN", Forms::kSetAndQuery, "<g>|AUTO|TRACk", "", kQueryLimits, gain},
     {"CALCulate:ENERgy", Forms::kQuery, "", "", kPlain, energy},
     {"CALCulate:ENERgy:TIME", Forms::kSetAndQuery, "<T>", "", kQueryLimits, time},
     {"CALCulate:ENERgy:CRITerion", Forms::kSetAndQuery, "ISE|DIFFerence", "", kPlain, criterion},

@@ -112,12 +112,17 @@ NumberRule without_unit(const IntegerRule& rule) noexcept {
 
 }  // namespace
 
-void Call::fail(ErrorCode code, const char* context) noexcept {
-  fail(code, Span<const char>(context, context == nullptr ? 0 : length_of(context)));
+void Call::fail(ErrorCode code, const char* words, const char* subject) noexcept {
+  status_.report(code, words, subject);
+  note_failure(code);
 }
 
-void Call::fail(ErrorCode code, Span<const char> context) noexcept {
-  status_.report(code, context);
+void Call::fail(ErrorCode code, Span<const char> offender) noexcept {
+  status_.report(code, offender);
+  note_failure(code);
+}
+
+void Call::note_failure(ErrorCode code) noexcept {
   failed_ = true;
   stops_message_ = stops_message_ || is_command_error(code);
 }
@@ -276,20 +281,6 @@ bool Call::choice(Words words, std::size_t& index) noexcept {
   return take(text) && read_choice(words, text, index);
 }
 
-bool Call::number_or_word(const NumberRule& rule, Words words, NumberOrWord& value) noexcept {
-  Span<const char> text;
-  if (!take(text)) {
-    return false;
-  }
-  const std::size_t word = find_word(words, text);
-  double number = 0.0;
-  if (word == words.size() && !read_in_range(rule, text, number)) {
-    return false;
-  }
-  value = {number, word};
-  return true;
-}
-
 bool Call::numbers(const NumberRule& rule, Span<double> values, std::size_t& count) noexcept {
   count = 0;
   while (has_more()) {
@@ -372,16 +363,13 @@ bool Call::block(Span<const char>& bytes) noexcept {
 
 /// MIN, MAX or DEF of a query.
 bool Call::take_limit(const NumberRule& rule, double& value) noexcept {
-  Span<const char> text;
-  if (!take(text)) {
-    return false;
-  }
   constexpr const char* kWords[] = {"MINimum", "MAXimum", "DEFault"};
   std::size_t index = 0;
-  if (!read_choice(kWords, text, index)) {
+  if (!choice(kWords, index)) {
     return false;
   }
-  return read_word_number(rule, text, value);
+  value = index == 0 ? rule.min : index == 1 ? rule.max : rule.by_default;
+  return true;
 }
 
 bool Call::setting(const NumberRule& rule, double current, double& value) noexcept {
@@ -422,6 +410,37 @@ bool Call::choice_setting(Words words, std::size_t current, std::size_t& index) 
     return choice(words, index);
   }
   response_.short_form(words[current]);
+  return false;
+}
+
+bool Call::number_or_word_setting(const NumberRule& rule, Words words, const NumberOrWord& current,
+                                  NumberOrWord& value) noexcept {
+  Span<const char> text;
+  double number = current.number;
+  std::size_t word = current.word;
+  if (!is_query()) {
+    if (!take(text)) {
+      return false;
+    }
+    word = is_word("DEFault", text) ? 0 : find_word(words, text);
+    if (word == words.size() && !read_in_range(rule, text, number)) {
+      return false;
+    }
+    value = {number, word};
+    return true;
+  }
+  if (has_more()) {
+    if (!take_limit(rule, number)) {
+      return false;
+    }
+    // A rule without a default has a NaN for it.
+    word = number == number ? words.size() : 0;
+  }
+  if (word < words.size()) {
+    response_.short_form(words[word]);
+  } else {
+    response_.number(number);
+  }
   return false;
 }
 

@@ -45,7 +45,8 @@ std::size_t length_of_mnemonic(Span<const char> text) noexcept {
 /// What a character means that cannot stand where it is.
 ErrorCode misplaced(Span<const char> rest, bool follows_mnemonic) noexcept {
   const char c = rest.empty() ? '\0' : rest[0];
-  if (follows_mnemonic && (c == ',' || c == '"' || c == '\'' || c == '#' || c == '(' || c == '?')) {
+  if (follows_mnemonic && (c == ',' || c == '"' || c == '\'' || c == '#' || c == '(' || c == '?' ||
+                           is_mnemonic_character(c))) {
     return ErrorCode::kHeaderSeparatorError;
   }
   const bool is_known = c == '\0' || c == ':' || c == '?' || c == '*' || is_digit(c);

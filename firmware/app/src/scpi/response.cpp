@@ -1,6 +1,7 @@
 // Fields of answers into the output memory, and their way out of it.
 #include "emax/app/scpi/response.hpp"
 
+#include "emax/app/scpi/error_code.hpp"
 #include "emax/app/scpi/pattern.hpp"
 #include "emax/decimal.hpp"
 #include "emax/elementary.hpp"
@@ -80,13 +81,20 @@ Response& Response::string(Span<const char> text) noexcept {
   return *this;
 }
 
-Response& Response::string(const char* text, Span<const char> context) noexcept {
+Response& Response::error(const ErrorEntry& entry) noexcept {
   separate();
   put("\"", 1);
-  put_quoted(Span<const char>(text, length_of(text)));
-  if (!context.empty()) {
+  put_quoted(text_of(entry.code));
+  if (entry.words != nullptr || entry.context_length > 0) {
     put(";", 1);
-    put_quoted(context);
+  }
+  put_quoted(Span<const char>(entry.context, entry.context_length));
+  if (entry.subject != nullptr) {
+    put_quoted(entry.subject);
+    put(": ", 2);
+  }
+  if (entry.words != nullptr) {
+    put_quoted(entry.words);
   }
   put("\"", 1);
   return *this;
@@ -204,6 +212,10 @@ void Response::put_quoted(Span<const char> text) noexcept {
     }
     put(&character, 1);
   }
+}
+
+void Response::put_quoted(const char* text) noexcept {
+  put_quoted(Span<const char>(text, length_of(text)));
 }
 
 void Response::separate() noexcept {

@@ -4,6 +4,8 @@
 namespace emax::app::scpi {
 namespace {
 
+static_assert(InputBuffer::kCapacity == 4096, "as the words of -363 say");
+
 constexpr std::size_t kMaxOffender = 40;
 
 /// The end of a text is where its invalid byte is.
@@ -52,10 +54,13 @@ bool Session::start_message() noexcept {
   if (!message.is_complete) {
     return false;
   }
-  if (message.text.empty() || !message.is_valid) {
-    status_.report(
-        message.text.empty() ? ErrorCode::kInputBufferOverrun : ErrorCode::kInvalidCharacter,
-        last_characters(message.text));
+  if (message.text.empty()) {
+    status_.report(ErrorCode::kInputBufferOverrun, "a line has 4096 characters at most");
+    input_.remove(0, 0);
+    return true;
+  }
+  if (!message.is_valid) {
+    status_.report(ErrorCode::kInvalidCharacter, last_characters(message.text));
     input_.remove(0, message.text.size());
     return true;
   }

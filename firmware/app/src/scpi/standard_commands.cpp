@@ -1,7 +1,6 @@
 // The status commands of IEEE 488.2 and SCPI-99 on the status model.
 #include "emax/app/scpi/standard_commands.hpp"
 
-#include "emax/app/scpi/error_code.hpp"
 #include "emax/app/scpi/error_queue.hpp"
 #include "emax/app/scpi/status_model.hpp"
 
@@ -80,7 +79,7 @@ void status_byte(Call& call) noexcept {
 void next_error(Call& call) noexcept {
   const ErrorEntry entry = call.status().take_error();
   call.answer().integer(static_cast<std::int16_t>(entry.code));
-  call.answer().string(text_of(entry.code), entry.context_text());
+  call.answer().error(entry);
 }
 
 void error_count(Call& call) noexcept {

@@ -58,12 +58,14 @@ void StatusModel::report(ErrorCode code, Span<const char> context) noexcept {
   }
 }
 
-void StatusModel::report(ErrorCode code, const char* context) noexcept {
-  std::size_t length = 0;
-  while (context != nullptr && context[length] != '\0') {
-    ++length;
+void StatusModel::report(ErrorCode code, const char* words, const char* subject) noexcept {
+  if (code == ErrorCode::kNoError) {
+    return;
   }
-  report(code, Span<const char>(context, length));
+  add_events(event_of(code));
+  if (!errors_.push(code, subject, words)) {
+    add_events(event_of(ErrorCode::kQueueOverflow));
+  }
 }
 
 void StatusModel::add_events(std::uint8_t events) noexcept {

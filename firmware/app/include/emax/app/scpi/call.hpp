@@ -85,7 +85,6 @@ class Call {
   bool boolean(bool& value) noexcept;
   /// @param[out] index Of the word given.
   bool choice(Words words, std::size_t& index) noexcept;
-  bool number_or_word(const NumberRule& rule, Words words, NumberOrWord& value) noexcept;
   /// All parameters that are left; none is fine.
   ///
   /// @param[out] values Filled from its front; undefined after an error.
@@ -106,15 +105,22 @@ class Call {
   bool boolean_setting(bool current, bool& value) noexcept;
   /// Answers the short form of the word.
   bool choice_setting(Words words, std::size_t current, std::size_t& index) noexcept;
+  /// A number, or one of some words, of which the first is the default.
+  bool number_or_word_setting(const NumberRule& rule, Words words, const NumberOrWord& current,
+                              NumberOrWord& value) noexcept;
 
   /// The fields of the answer.
   Response& answer() noexcept { return response_; }
   /// Asks to be called again for each of the items, after what was answered so far.
   void answer_items(std::size_t count) noexcept;
 
-  /// Reports an error. The context says what to do, or shows the offending text.
-  void fail(ErrorCode code, const char* context = nullptr) noexcept;
-  void fail(ErrorCode code, Span<const char> context) noexcept;
+  /// Reports an error.
+  ///
+  /// @param[in] words   What to do; kept by their address. May be null.
+  /// @param[in] subject What they are about; may be null.
+  void fail(ErrorCode code, const char* words = nullptr, const char* subject = nullptr) noexcept;
+  /// The same with the offending text.
+  void fail(ErrorCode code, Span<const char> offender) noexcept;
   bool failed() const noexcept { return failed_; }
 
   /// Asks to be called again later; nothing may have been answered yet.
@@ -145,6 +151,7 @@ class Call {
         count_(origin.count),
         origin_(origin) {}
 
+  void note_failure(ErrorCode code) noexcept;
   bool take(Span<const char>& text) noexcept;
   bool refuse(Span<const char> text, ErrorCode error) noexcept;
   bool read_number(const NumberRule& rule, Span<const char> text, double& value) noexcept;

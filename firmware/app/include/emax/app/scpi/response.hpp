@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/scpi/error_queue.hpp"
 #include "emax/span.hpp"
 
 namespace emax::app::scpi {
@@ -34,8 +35,9 @@ class Response {
   Response& short_form(const char* pattern) noexcept;
   /// String data: in double quotes, those inside doubled.
   Response& string(Span<const char> text) noexcept;
-  /// An error's string: "<text>" or "<text>;<context>".
-  Response& string(const char* text, Span<const char> context) noexcept;
+  /// An error's string: "<text>", "<text>;<context>", "<text>;<words>" or
+  /// "<text>;<subject>: <words>".
+  Response& error(const ErrorEntry& entry) noexcept;
   /// A definite-length block, #<digits><length><bytes>, as the last field of an answer.
   ///
   /// The bytes are not copied: they must stay as they are until `Session::holds_block()` is false.
@@ -75,6 +77,7 @@ class Response {
  private:
   void put(const char* characters, std::size_t count) noexcept;
   void put_quoted(Span<const char> text) noexcept;
+  void put_quoted(const char* text) noexcept;
   void separate() noexcept;
 
   char text_[kCapacity] = {};

@@ -21,7 +21,7 @@ namespace emax::app::scpi {
 /// While a unit waits (see `Call::wait()`) or an answer is not read, later messages stay where they
 /// are, except those of at most 256 characters all of whose units are immediate: they overtake. One
 /// that has queries overtakes only if it has at most three of them and no answer is under way, so
-/// that answers are never mixed.
+/// that answers are never mixed. Of "ABOR;*RST" the immediate front overtakes, and the rest stays.
 ///
 /// After a command error (-1xx) the rest of its message is dropped; after any other error it goes
 /// on with the next unit. A message with a byte that belongs into none is -101, one that is longer
@@ -126,7 +126,7 @@ class Session {
   template <typename Context>
   bool look_ahead(Table<Context> table) noexcept;
   template <typename Context>
-  bool may_overtake(Table<Context> table, Span<const char> text) const noexcept;
+  std::size_t overtaking_length(Table<Context> table, Span<const char> text) const noexcept;
 
   bool start_message() noexcept;
   void start_overtaking(Span<const char> text) noexcept;
@@ -247,37 +247,38 @@ bool Session::look_ahead(Table<Context> table) noexcept {
   if (!message.is_complete) {
     return false;
   }
-  if (message.is_valid && !message.text.empty() && may_overtake(table, message.text)) {
-    start_overtaking(message.text);
+  const std::size_t length = message.is_valid ? overtaking_length(table, message.text) : 0;
+  if (length > 0) {
+    start_overtaking(message.text.first(length));
   } else {
     looked_at_ = static_cast<std::uint16_t>(looked_at_ + message.text.size() + 1);
   }
   return true;
 }
 
+/// @returns The characters of the message that overtake: all of it, the units in front of a
+/// semicolon if they answer nothing and leave the path at the root, or none.
 template <typename Context>
-bool Session::may_overtake(Table<Context> table, Span<const char> text) const noexcept {
+std::size_t Session::overtaking_length(Table<Context> table, Span<const char> text) const noexcept {
   if (text.size() > kMaxOvertaking) {
-    return false;
+    return 0;
   }
   HeaderPath path;
   std::size_t queries = 0;
   for (std::size_t position = 0; position < text.size();) {
+    const std::size_t begin = position;
     const ProgramUnit unit = cut_unit(text, position);
     if (unit.is_empty) {
       continue;
     }
-    if (unit.error != ErrorCode::kNoError) {
-      return false;
-    }
-    const Found found = find(table, unit, path);
+    const Found found = unit.error == ErrorCode::kNoError ? find(table, unit, path) : Found{};
     if (found.row == kNoRow || !table[found.row].is_immediate()) {
-      return false;
+      return begin > 0 && queries == 0 && path.nodes == 0 ? begin - 1 : 0;
     }
     path = found.path;
     queries += unit.is_query ? 1U : 0U;
   }
-  return has_room_for(queries);
+  return has_room_for(queries) ? text.size() : 0;
 }
 
 }  // namespace emax::app::scpi

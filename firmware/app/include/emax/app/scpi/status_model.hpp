@@ -89,7 +89,7 @@ class StatusRegister {
   std::uint16_t negative_ = 0;
 };
 
-/// All registers. 0.7 KiB with the queue.
+/// All registers. 0.8 KiB with the queue.
 class StatusModel {
  public:
   /// As after switching on: nothing enabled, filters preset, the queue empty, ESR = power on.
@@ -101,7 +101,9 @@ class StatusModel {
 
   /// Queues an error and sets the bit of its class. kNoError does nothing.
   void report(ErrorCode code, Span<const char> context) noexcept;
-  void report(ErrorCode code, const char* context = nullptr) noexcept;
+  /// @param[in] words   Kept by their address; may be null.
+  /// @param[in] subject What they are about; may be null.
+  void report(ErrorCode code, const char* words = nullptr, const char* subject = nullptr) noexcept;
 
   /// Takes the oldest error off the queue.
   ErrorEntry take_error() noexcept { return errors_.pop(); }
