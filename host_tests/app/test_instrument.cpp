@@ -105,13 +105,105 @@ TEST(Instrument, KnowsTheLimitsOfEverySettingThatIsANumber) {
     }
     const std::vector<double> least = i.numbers(command + "? MIN");
     const std::vector<double> most = i.numbers(command + "? MAX");
-    const std::vector<double> by_default = i.numbers(command + "? DEF");
-    ASSERT_EQ(least.size() + most.size() + by_default.size(), 3U);
-    EXPECT_LT(least[0], by_default[0]);
-    EXPECT_LT(by_default[0], most[0]);
-    EXPECT_EQ(i.numbers(command + "?"), by_default);
+    const std::string by_default = i.ask(command + "? DEF");
+    ASSERT_EQ(least.size() + most.size(), 2U);
+    EXPECT_LT(least[0], most[0]);
+    EXPECT_EQ(i.ask(command + "?"), by_default);
+    if (by_default != "AUTO") {
+      EXPECT_LT(least[0], std::stod(by_default));
+      EXPECT_LT(std::stod(by_default), most[0]);
+    }
+    EXPECT_EQ(i.ask(command + " MAX;:" + command + " DEF;:" + command + "?"), by_default);
+    // A maximum may be more than other settings leave room for.
+    EXPECT_EQ(i.errors().find("-1"), std::string::npos);
   }
-  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(Instrument, TakesTheDefaultsOfTheSweepFromTheBoard) {
+  InstrumentBench i;
+  i.sweep.level_mps2 = 3.0;
+  i.sweep.settle_s = 0.5;
+  i.sweep.cycles = 7;
+  i.sweep.reference.sensitivity[0] = 0.25;
+  EXPECT_EQ(
+      i.ask("SOUR:LEV DEF;LEV?;LEV? DEF;:SWE:SETT DEF;SETT?;CYCL DEF;CYCL?;:REF:SENS DEF;SENS?"),
+      "3;3;0.5;7;0.25,0.5");
+  EXPECT_EQ(i.ask("*RST;:SOUR:LEV?;:SWE:CYCL?"), "3;7");
+}
+
+TEST(Instrument, NamesTheSettingThatIsInConflict) {
+  InstrumentBench i;
+  EXPECT_EQ(error_of(i, "SOUR:LEV 21"),
+            "-221,\"Settings conflict;acceleration limit: at least the level, in m/s^2\"");
+  EXPECT_EQ(
+      error_of(i, "SOUR:SLEW 1"),
+      "-221,\"Settings conflict;slew: enough to lead the drive limit to zero within 256 frames, "
+      "in V/s\"");
+  EXPECT_EQ(error_of(i, "CALC:MCAR:PROB MIN"),
+            "-221,\"Settings conflict;probability: larger, so that its share of the trials is at "
+            "least one of them\"");
+  EXPECT_EQ(error_of(i, "CALC:MCAR:SEED 4294967295,1,1,1"),
+            "-221,\"Settings conflict;seed: four whole numbers from 1 to 2147483578, 2147483542, "
+            "2147483422 and 2147483122\"");
+  EXPECT_EQ(error_of(i, std::string(kPaperModel) + ";ENER:METH PAP;TIME 16ms;:CALC:MCAR?"),
+            "-221,\"Settings conflict;The trials of the paper's method have no room for so many "
+            "cells; shorten the time, take a longer step, or give no uncertainties.\"");
+}
+
+TEST(Instrument, TakesUnitsWhereverANumberHasOne) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("CALC:MOD 1,4KHZ,0.3,0.01,10HZ,0.001;MOD?").substr(0, 7), "1,4000,");
+  EXPECT_EQ(i.ask("TRAC:FRES:DATA 1KHZ,1,-10DEG,0.01,500 MDEG"), "");
+  const std::vector<double> point = i.numbers("FETC:FRES?");
+  ASSERT_EQ(point.size(), 6U);
+  EXPECT_EQ(point[1], 1000.0);
+  EXPECT_NEAR(point[3], -10.0, 1e-12);  // Through radians and back.
+  EXPECT_NEAR(point[5], 0.25, 1e-12);
+  EXPECT_EQ(error_of(i, "CALC:MOD 1V,4000,0.3"), "-138,\"Suffix not allowed;1V\"");
+}
+
+// A query that fails answers nothing, not the part before the failure.
+TEST(Instrument, ChecksAllTimesBeforeItAnswersTheFirst) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  EXPECT_EQ(error_of(i, "CALC:IMP? 1ms,-1"), "-222,\"Data out of range;-1\"");
+  EXPECT_EQ(error_of(i, "CALC:IMP? 1ms,2ms,"), "-109,\"Missing parameter\"");
+  EXPECT_EQ(i.numbers("CALC:IMP? 1ms,2ms").size(), 2U);
+}
+
+TEST(Instrument, SaysThatTheAbsoluteErrorIsOutOfReach) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  const std::vector<double> at_one_second = i.numbers("CALC:ENER:TIME 1;:CALC:AERR?");
+  ASSERT_EQ(at_one_second.size(), 1U);
+  EXPECT_GT(at_one_second[0], 1.0);
+  EXPECT_EQ(error_of(i, "CALC:ENER:TIME 100;:CALC:AERR?"),
+            "-221,\"Settings conflict;k moves too often for so long a T: shorten it\"");
+}
+
+// A peer leaves in the moment in which its fixed point is done: the next one asks for another.
+TEST(Instrument, DoesNotAnswerTheFixedPointOfAnother) {
+  InstrumentBench i;
+  const std::string mine = ";:CALC:FILT:ORD 5;:CALC:ENER:FPA?";
+  const std::string answer = i.ask(kPaperModel + mine);
+  int polls = 0;
+  const auto ask_for_another = [&i] {
+    (void)i.ask("CALC:FILT:ORD 10;:CALC:MOD?");
+    i.send("CALC:ENER:FPA?");
+  };
+  for (ask_for_another(); !i.instrument->is_settled() || polls < 2; ++polls) {
+    i.poll();
+  }
+  (void)i.console.receive();
+  for (int after = 1; after < polls; ++after) {
+    ask_for_another();
+    i.poll(after);
+    i.console.connect(false);
+    i.poll();
+    i.console.connect(true);
+    (void)i.console.receive();
+    ASSERT_EQ(i.ask(kPaperModel + mine), answer) << "after " << after << " of " << polls;
+  }
 }
 
 // The table is what DESIGN promises to others who script against it.
@@ -454,7 +546,7 @@ TEST(Instrument, KeepsSettingsInFourSlots) {
   InstrumentBench i;
   for (int slot = 0; slot < 4; ++slot) {
     EXPECT_EQ(error_of(i, "*RCL " + std::to_string(slot)),
-              "-230,\"Data corrupt or stale;empty slot: *SAV first\"");
+              "-230,\"Data corrupt or stale;empty or damaged slot: *SAV first\"");
   }
   ASSERT_EQ(i.ask("CALC:ENER:TIME 3ms;LIM 2;:SOUR:LEV 0.7;:CALC:MCAR:SEED 9,8,7,6;*SAV 3"), "");
   ASSERT_EQ(i.ask("*RST;:CALC:FILT:ORD 3;*SAV 0"), "");
@@ -484,6 +576,13 @@ TEST(Instrument, KnowsTheLastIdentificationAfterPowerOff) {
   EXPECT_EQ(i.ask("CALC:IDEN:COV?"), covariance);
   EXPECT_EQ(i.ask("CALC:ENER?"), energy);
   EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "0");
+  // Its correlations and its Birge ratio are known to a fit only: no trials as if they were 0
+  // and 1.
+  const char* const needs_fit =
+      "-230,\"Data corrupt or stale;NORM and BIRG need the points of the fit: INIT:SWE\"";
+  EXPECT_EQ(error_of(i, "CALC:MCAR:TRI 1000;DIST NORM;:CALC:MCAR?"), needs_fit);
+  EXPECT_EQ(error_of(i, "CALC:MCAR:DIST BOX;BIRG 1;:INIT:REP"), needs_fit);
+  EXPECT_EQ(i.ask("CALC:MCAR:BIRG 0;:CALC:MCAR?").substr(0, 5), "1000,");
   ASSERT_EQ(i.ask("*RST"), "");
   EXPECT_EQ(error_of(i, "CALC:IDEN?"),
             "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"");
@@ -494,7 +593,8 @@ TEST(Instrument, SaysThatTheStoreFails) {
   i.store.cut_power_after(10);
   EXPECT_EQ(error_of(i, "*SAV 1"), "-311,\"Memory error;the store refuses: another slot\"");
   i.store.restore_power();
-  EXPECT_EQ(error_of(i, "*RCL 1"), "-230,\"Data corrupt or stale;empty slot: *SAV first\"");
+  EXPECT_EQ(error_of(i, "*RCL 1"),
+            "-230,\"Data corrupt or stale;empty or damaged slot: *SAV first\"");
 }
 
 TEST(Instrument, CountsErrorsUpToTheQueuesEnd) {

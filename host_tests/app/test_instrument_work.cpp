@@ -121,7 +121,7 @@ TEST_P(InstrumentWork, EndsAtOnceOnAbort) {
 TEST_P(InstrumentWork, EndsAtOnceOnReset) {
   InstrumentBench i;
   start(i);
-  EXPECT_EQ(i.ask("*RST;*OPC?"), "1");
+  EXPECT_EQ(i.ask("*OPC;*RST;*OPC?;*ESR?"), "1;0") << "what *OPC waited for was not completed";
   EXPECT_FALSE(i.instrument->is_working());
   EXPECT_TRUE(i.drive_is_at_zero());
 }
@@ -240,6 +240,19 @@ TEST(InstrumentQueries, EndWithoutAnAnswerOnAbort) {
   EXPECT_EQ(i.ask("CALC:MCAR:TRI 1000;:CALC:MCAR?").substr(0, 5), "1000,");
 }
 
+TEST(InstrumentQueries, EndOnAMessageThatOnlyBeginsWithAbort) {
+  InstrumentBench i;
+  (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000000");
+  i.send("CALC:MCAR?");
+  i.poll(20);
+  ASSERT_TRUE(i.instrument->is_held());
+  i.send("ABOR;*CLS;*RST;:CALC:MCAR:TRI?");
+  i.poll(20);
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_EQ(i.console.receive(), "200000\n");
+  EXPECT_EQ(i.errors(), "");
+}
+
 TEST(InstrumentQueries, StopForAPeerThatGoesAway) {
   InstrumentBench i;
   (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000000");
@@ -295,6 +308,11 @@ TEST(InstrumentSweep, KeepsPointsOnAbort) {
   EXPECT_EQ(points[1], 200.0);
   EXPECT_EQ(i.ask("CALC:ENER?"), "");
   EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+  (void)i.ask(kPaperModel);
+  EXPECT_EQ(i.numbers("FETC:FRES?"), points) << "they stay beside a device from elsewhere";
+  EXPECT_EQ(i.ask("TRAC:FRES:CLE;POIN?"), "0");
+  EXPECT_EQ(i.ask("FETC:FRES?"), "");
+  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
 }
 
 TEST(InstrumentSweep, FindsTheDeviceOfTheBench) {
@@ -310,8 +328,10 @@ TEST(InstrumentSweep, FindsTheDeviceOfTheBench) {
   (void)i.ask("TRAC:FRES:DATA 6000,1,-90,0.1,1");
   EXPECT_EQ(i.errors(), "-221,\"Settings conflict;points of a sweep: TRAC:FRES:CLE first\"\n");
   // A device given by its parameters takes over, and the points stay.
+  const std::string points = i.ask("FETC:FRES?");
   EXPECT_EQ(i.ask("CALC:MOD 2,4000,0.3;MOD?").substr(0, 7), "2,4000,");
   EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "5");
+  EXPECT_EQ(i.ask("FETC:FRES?"), points) << "with the part of u that is common to all of them";
   EXPECT_EQ(i.numbers("CALC:IDEN?"), device);
   EXPECT_EQ(i.numbers("CALC:MOD?")[0], device[0]);
 }
@@ -365,7 +385,9 @@ TEST(InstrumentSweep, RefusesWhatTheBenchCannotDo) {
   InstrumentBench i;
   EXPECT_EQ(i.ask("SWE:FREQ 100,200,39999"), "");
   EXPECT_EQ(i.ask("SWE:FREQ 100,200,40000"), "");
-  EXPECT_EQ(i.errors(), "-221,\"Settings conflict;above 0 and below the sample rate over 2\"\n");
+  EXPECT_EQ(i.errors(),
+            "-221,\"Settings conflict;sweep frequencies: above 0 and below the sample rate over "
+            "2.5\"\n");
   EXPECT_EQ(i.ask("SOUR:LEV 21"), "");
   EXPECT_EQ(i.errors().substr(0, 4), "-221");
 }

@@ -89,6 +89,7 @@ void Instrument::send() noexcept {
 }
 
 void Instrument::reset() noexcept {
+  completes_operation_ = false;  // Before the work ends, or it would be completed.
   abort();
   origin_ = Origin::kNothing;
   points_.clear();
@@ -96,7 +97,6 @@ void Instrument::reset() noexcept {
   device_ = {};
   has_identification_ = false;
   invalidate(Change::kDevice);
-  completes_operation_ = false;
   reset_settings();
 }
 

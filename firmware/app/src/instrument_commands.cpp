@@ -91,6 +91,7 @@ using scpi::standard;
 
 // Ranges of the settings; `check()` has the last word.
 constexpr double kNanoSecond = 1e-9;
+constexpr double kOfBoard = 0.0;  // A default that is looked up.
 constexpr Settings kDefaults;
 constexpr IntegerRule kOrder = {1, kMaxFilterOrder, kDefaults.filter_order};
 constexpr NumberRule kCutoff = {kMinFrequency_hz, kMaxFrequency_hz, kDefaults.cutoff_hz,
@@ -100,10 +101,10 @@ constexpr NumberRule kStep = {kNanoSecond, kMaxDuration_s, kDefaults.step_s, scp
 constexpr IntegerRule kIterations = {1, kMaxIterations, kDefaults.iterations};
 constexpr IntegerRule kTrials = {kMinTrials, kMaxTrials, kDefaults.trials};
 constexpr NumberRule kProbability = {1e-6, 0.999999, kDefaults.probability, nullptr};
-constexpr NumberRule kSettle = {0.0, 10.0, 0.01, scpi::kSecond};
-constexpr NumberRule kLevel = {1e-9, 1e9, 1.0, scpi::kMetrePerSecondSquared};
-constexpr NumberRule kAccelerationLimit = {1e-9, 1e9, 20.0, scpi::kMetrePerSecondSquared};
-constexpr NumberRule kSlew = {1e-9, 1e9, 1e5, scpi::kVoltPerSecond};
+constexpr NumberRule kSettle = {0.0, 10.0, kOfBoard, scpi::kSecond};
+constexpr NumberRule kLevel = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
+constexpr NumberRule kAccelerationLimit = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
+constexpr NumberRule kSlew = {1e-9, 1e9, kOfBoard, scpi::kVoltPerSecond};
 constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence"};
 constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
 constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
@@ -176,9 +177,9 @@ constexpr scpi::Command<Instrument> kCommands[] = {
     {"CALCulate:MODel", kBoth, "<S>,<f0>,<beta>[,<uS>,<uf0>,<ubeta>]", "The device by its parameters, standard u", kPlain, C::model},
     {"CALCulate:FILTer:ORDer", kBoth, "<L>", "Order of the reference filter", kQueryLimits, C::integer<int, &Settings::filter_order, kOrder, Change::kEnergy>},
     {"CALCulate:FILTer:FREQuency", kBoth, "<Hz>", "Its cutoff frequency", kQueryLimits, C::number<&Settings::cutoff_hz, kCutoff, Change::kEnergy>},
-    {"CALCulate:FILTer:GAIN", kBoth, "<g>|AUTO|TRACk", "Its gain; AUTO: the estimate of S, TRACk: the S of each trial", kPlain, C::filter_gain},
+    {"CALCulate:FILTer:GAIN", kBoth, "<g>|AUTO|TRACk", "Its gain; AUTO: the estimate of S, TRACk: the S of each trial", kQueryLimits, C::filter_gain},
     {"CALCulate:ENERgy:TIME", kBoth, "<T>", "Length of the signal", kQueryLimits, C::number<&Settings::duration_s, kTime, Change::kEnergy>},
-    {"CALCulate:ENERgy:LIMit", kBoth, "<a>|AUTO", "The signal stays within +-a; AUTO: the number of S", kPlain, C::energy_limit},
+    {"CALCulate:ENERgy:LIMit", kBoth, "<a>|AUTO", "The signal stays within +-a; AUTO: the number of S", kQueryLimits, C::energy_limit},
     {"CALCulate:ENERgy:CRITerion", kBoth, "ISE|DIFFerence", "Energy of the error, or difference of the energies", kPlain, C::choice<Criterion, &Settings::criterion, kCriterionWords, Change::kEnergy>},
     {"CALCulate:ENERgy:METHod", kBoth, "BEST|PAPer", "Many starts, or the fixed point of the paper", kPlain, C::choice<Method, &Settings::method, kMethodWords, Change::kEnergy>},
     {"CALCulate:ENERgy:STEP", kBoth, "<s>", "Grid step of PAPer and FPA?", kQueryLimits, C::number<&Settings::step_s, kStep, Change::kPaper>},

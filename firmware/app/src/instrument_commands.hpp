@@ -72,11 +72,11 @@ struct InstrumentCommands {
 
   template <double SweepSettings::*kMember, const NumberRule& kRule>
   static void sweep_number(Instrument& i, Call& call) noexcept {
-    SweepSettings next = i.sweep_settings_;
-    if (call.setting(kRule, next.*kMember, next.*kMember)) {
-      take(i, call, next);
-    }
+    sweep_number(i, call, kMember, kRule);
   }
+  /// The default is that of the board.
+  static void sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
+                           NumberRule rule) noexcept;
 
   static void sweep_cycles(Instrument& i, Call& call) noexcept;
   static void filter_gain(Instrument& i, Call& call) noexcept;

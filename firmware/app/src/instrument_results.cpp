@@ -1,6 +1,7 @@
 // The commands that answer what was measured or computed, and see to it that it is.
 #include <limits>
 
+#include "emax/absolute_error.hpp"
 #include "emax/capacity.hpp"
 #include "emax/elementary.hpp"
 #include "emax/units.hpp"
@@ -19,6 +20,12 @@ constexpr double kMaxPhase_deg = 360.0;
 constexpr std::int64_t kMaxRandom = 1'000'000;
 constexpr std::size_t kPointFields = 5;
 constexpr NumberRule kAnyNumber = {-kHuge, kHuge, kNoDefault, nullptr};
+constexpr NumberRule kAnyFrequency = {-kHuge, kHuge, kNoDefault, scpi::kHertz};
+constexpr NumberRule kAnyPhase = {-kHuge, kHuge, kNoDefault, scpi::kDegree};
+// Of f, A, phi, uA, uphi, and of S, f0, beta.
+constexpr const NumberRule* kPointRules[kPointFields] = {&kAnyFrequency, &kAnyNumber, &kAnyPhase,
+                                                         &kAnyNumber, &kAnyPhase};
+constexpr const NumberRule* kDeviceRules[] = {&kAnyNumber, &kAnyFrequency, &kAnyNumber};
 constexpr NumberRule kAnyTime = {0.0, kMaxDuration_s, kNoDefault, scpi::kSecond};
 
 }  // namespace
@@ -62,12 +69,12 @@ bool InstrumentCommands::can_go_on(Instrument& i, Call& call) noexcept {
 }
 
 std::size_t InstrumentCommands::point_count(const Instrument& i) noexcept {
-  return i.origin_ == Origin::kSweep ? i.sweep_.points().size() : i.points_.size();
+  return i.points_origin_ == Origin::kSweep ? i.sweep_.points().size() : i.points_.size();
 }
 
 void InstrumentCommands::answer_point(const Instrument& i, std::size_t index,
                                       scpi::Response& out) noexcept {
-  const bool is_swept = i.origin_ == Origin::kSweep;
+  const bool is_swept = i.points_origin_ == Origin::kSweep;
   const ResponsePoint& point =
       is_swept ? i.sweep_.points()[index].point : i.points_.points()[index];
   const double common = is_swept ? i.sweep_.common().total * point.amplitude : 0.0;
@@ -104,23 +111,25 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
     call.fail(ErrorCode::kSettingsConflict, "points of a sweep: TRAC:FRES:CLE first");
     return;
   }
-  Instrument::TableWorkspace& work = i.workspace_.table;
-  std::size_t count = 0;
-  if (!call.numbers(kAnyNumber, Span<double>(work.numbers), count)) {
-    return;
-  }
-  if (count == 0 || count % kPointFields != 0) {
+  if (call.count() % kPointFields != 0) {
     call.fail(ErrorCode::kMissingParameter, "five numbers for each point");
     return;
   }
-  work.response = i.points_;
-  for (std::size_t at = 0; at < count; at += kPointFields) {
-    if (const char* problem = add_point(work.response, work.numbers + at)) {
+  FrequencyResponse& grown = i.workspace_.table;
+  grown = i.points_;
+  while (call.has_more()) {
+    double numbers[kPointFields] = {};
+    for (std::size_t field = 0; field < kPointFields; ++field) {
+      if (!call.number(*kPointRules[field], numbers[field])) {
+        return;
+      }
+    }
+    if (const char* problem = add_point(grown, numbers)) {
       call.fail(ErrorCode::kDataOutOfRange, problem);
       return;
     }
   }
-  i.points_ = work.response;
+  i.points_ = grown;
   i.has_identification_ = false;
   i.points_origin_ = Origin::kTable;
   i.is_fit_kept_ = false;
@@ -158,6 +167,7 @@ void InstrumentCommands::clear_points(Instrument& i, Call& call) noexcept {
     return;
   }
   i.points_.clear();
+  i.points_origin_ = Origin::kNothing;
   if (i.origin_ != Origin::kModel) {
     i.origin_ = Origin::kNothing;
     i.invalidate(Change::kDevice);
@@ -234,11 +244,12 @@ void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
     return;
   }
   Device device = {};
+  std::size_t at = 0;
   double* const fields[] = {&device.estimate.sensitivity,   &device.estimate.natural_frequency_hz,
                             &device.estimate.damping,       &device.u.sensitivity,
                             &device.u.natural_frequency_hz, &device.u.damping};
   for (double* field : fields) {
-    if (call.has_more() && !call.number(kAnyNumber, *field)) {
+    if (call.has_more() && !call.number(*kDeviceRules[at++ % 3], *field)) {
       return;
     }
   }
@@ -310,6 +321,9 @@ void InstrumentCommands::fixed_point(Instrument& i, Call& call) noexcept {
     call.answer().number(i.fixed_point_energy(call.item()));
     return;
   }
+  if (call.stage() == Call::Stage::kStart) {
+    i.is_fixed_point_ready_ = false;  // One that nobody fetched.
+  }
   if (!provide(i, call, Goal::kModel)) {
     return;
   }
@@ -330,9 +344,14 @@ void InstrumentCommands::fixed_point(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::absolute_error(Instrument& i, Call& call) noexcept {
-  if (provide(i, call, Goal::kModel)) {
-    call.answer().number(i.evaluation_.absolute_error_v());
+  if (!provide(i, call, Goal::kModel)) {
+    return;
   }
+  if (AbsoluteError().start(i.evaluation_.model(), i.settings_.duration_s) != Status::kOk) {
+    call.fail(ErrorCode::kSettingsConflict, "k moves too often for so long a T: shorten it");
+    return;
+  }
+  call.answer().number(i.evaluation_.absolute_error_v());
 }
 
 void InstrumentCommands::settling_time(Instrument& i, Call& call) noexcept {
@@ -348,8 +367,13 @@ void InstrumentCommands::impulse_response(Instrument& i, Call& call) noexcept {
     answer_impulse(i, call);
     return;
   }
-  if (provide(i, call, Goal::kModel)) {
-    call.answer_items(call.count());
+  if (!provide(i, call, Goal::kModel)) {
+    return;
+  }
+  call.answer_items(call.count());
+  // A wrong one among them is found before the first is answered.
+  double time_s = 0.0;
+  while (call.has_more() && call.number(kAnyTime, time_s)) {
   }
 }
 

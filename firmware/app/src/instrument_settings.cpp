@@ -16,9 +16,7 @@ constexpr NumberRule kGain = {0.0, kMaxGain, kNoDefault, nullptr};
 constexpr NumberRule kLimit = {kMinLimit_mps2, kMaxLimit_mps2, kNoDefault,
                                scpi::kMetrePerSecondSquared};
 constexpr NumberRule kFrequency = {0.1, 1e9, kNoDefault, scpi::kHertz};
-constexpr IntegerRule kCycles = {1, 1000, 3};
-constexpr NumberRule kSensitivity = {1e-9, 1e9, 0.1, nullptr};
-constexpr NumberRule kExpandedPercent = {0.0, kMaxPercent, 0.5, scpi::kPercent};
+constexpr std::int64_t kMaxCycles = 1000;
 constexpr const char* kGainWords[] = {"AUTO", "TRACk"};
 constexpr const char* kLimitWords[] = {"AUTO"};
 
@@ -32,7 +30,7 @@ void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next,
   }
   const SettingsError error = check(next);
   if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation);
+    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
     return;
   }
   const bool has_other_numbers =
@@ -51,58 +49,52 @@ void InstrumentCommands::take(Instrument& i, Call& call, const SweepSettings& ne
   }
   const SettingsError error = check(next, i.ports_.analog.format());
   if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation);
+    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
     return;
   }
   i.sweep_settings_ = next;
 }
 
+void InstrumentCommands::sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
+                                      NumberRule rule) noexcept {
+  SweepSettings next = i.default_sweep();
+  rule.by_default = next.*member;
+  next = i.sweep_settings_;
+  if (call.setting(rule, next.*member, next.*member)) {
+    take(i, call, next);
+  }
+}
+
 void InstrumentCommands::sweep_cycles(Instrument& i, Call& call) noexcept {
+  SweepSettings next = i.default_sweep();
+  const IntegerRule rule = {1, kMaxCycles, next.cycles};
+  next = i.sweep_settings_;
   std::int64_t value = 0;
-  if (call.integer_setting(kCycles, i.sweep_settings_.cycles, value)) {
-    SweepSettings next = i.sweep_settings_;
+  if (call.integer_setting(rule, next.cycles, value)) {
     next.cycles = static_cast<std::uint32_t>(value);
     take(i, call, next);
   }
 }
 
 void InstrumentCommands::filter_gain(Instrument& i, Call& call) noexcept {
-  const Settings& current = i.settings_;
-  if (call.is_query()) {
-    if (current.gain_mode == GainMode::kFixed) {
-      call.answer().number(current.gain);
-    } else {
-      const bool tracks = current.gain_mode == GainMode::kTrack;
-      call.answer().short_form(kGainWords[tracks ? 1 : 0]);
-    }
-    return;
-  }
-  scpi::NumberOrWord given;
-  if (!call.number_or_word(kGain, scpi::Words(kGainWords), given)) {
-    return;
-  }
   constexpr GainMode kModes[] = {GainMode::kAuto, GainMode::kTrack, GainMode::kFixed};
-  Settings next = current;
-  next.gain_mode = kModes[given.word];
-  next.gain = given.number;
-  take(i, call, next, Change::kEnergy);
+  const GainMode mode = i.settings_.gain_mode;
+  const std::size_t word = mode == GainMode::kAuto ? 0 : mode == GainMode::kTrack ? 1 : 2;
+  scpi::NumberOrWord gain{i.settings_.gain, word};
+  if (call.number_or_word_setting(kGain, scpi::Words(kGainWords), gain, gain)) {
+    Settings next = i.settings_;
+    next.gain_mode = kModes[gain.word];
+    next.gain = gain.number;
+    take(i, call, next, Change::kEnergy);
+  }
 }
 
 void InstrumentCommands::energy_limit(Instrument& i, Call& call) noexcept {
-  const Settings& current = i.settings_;
-  if (call.is_query()) {
-    if (current.limit_is_auto) {
-      call.answer().word(kLimitWords[0]);
-    } else {
-      call.answer().number(current.limit_mps2);
-    }
-    return;
-  }
-  scpi::NumberOrWord given;
-  if (call.number_or_word(kLimit, scpi::Words(kLimitWords), given)) {
-    Settings next = current;
-    next.limit_is_auto = given.word == 0;
-    next.limit_mps2 = given.number;
+  scpi::NumberOrWord limit{i.settings_.limit_mps2, i.settings_.limit_is_auto ? 0U : 1U};
+  if (call.number_or_word_setting(kLimit, scpi::Words(kLimitWords), limit, limit)) {
+    Settings next = i.settings_;
+    next.limit_is_auto = limit.word == 0;
+    next.limit_mps2 = limit.number;
     take(i, call, next, Change::kEnergy);
   }
 }
@@ -134,9 +126,12 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
     call.answer().number(current.sensitivity[0]).number(current.expanded_percent);
     return;
   }
-  SweepSettings next = i.sweep_settings_;
-  if (!call.number(kSensitivity, next.reference.sensitivity[0]) ||
-      (call.has_more() && !call.number(kExpandedPercent, next.reference.expanded_percent))) {
+  SweepSettings next = i.default_sweep();
+  const NumberRule sensitivity = {1e-9, 1e9, next.reference.sensitivity[0], nullptr};
+  const NumberRule percent = {0.0, kMaxPercent, next.reference.expanded_percent, scpi::kPercent};
+  next = i.sweep_settings_;
+  if (!call.number(sensitivity, next.reference.sensitivity[0]) ||
+      (call.has_more() && !call.number(percent, next.reference.expanded_percent))) {
     return;
   }
   next.reference.count = 1;
@@ -207,7 +202,7 @@ void InstrumentCommands::recall(Instrument& i, Call& call) noexcept {
   }
   const Status status = i.recall_settings(slot);
   if (status == Status::kNothingStored) {
-    call.fail(ErrorCode::kDataCorruptOrStale, "empty slot: *SAV first");
+    call.fail(ErrorCode::kDataCorruptOrStale, "empty or damaged slot: *SAV first");
   } else if (status != Status::kOk) {
     call.fail(ErrorCode::kSaveRecallMemoryLost, "set everything anew, *SAV again");
   }

@@ -76,6 +76,9 @@ FailureWords words_of(const Failure& failure) noexcept {
   if (failure.stage == Stage::kTrend && failure.status == Status::kTooManyCells) {
     return kTrendTooLong;
   }
+  if (failure.stage == Stage::kMonteCarlo && failure.status == Status::kTooManyCells) {
+    return {failure.status, ErrorCode::kSettingsConflict, failure.reason};
+  }
   for (const FailureWords& words : kFailures) {
     if (words.status == failure.status) {
       return words;
@@ -183,6 +186,7 @@ Instrument::Refusal Instrument::begin_sweep() noexcept {
     return {ErrorCode::kHardwareError, words_of(status).words};
   }
   points_.clear();
+  points_origin_ = Origin::kSweep;
   has_identification_ = false;
   invalidate(Change::kDevice);
   origin_ = Origin::kSweep;
@@ -194,7 +198,6 @@ void Instrument::end_sweep() noexcept {
   const Status status = sweep_.status();
   if (status == Status::kOk) {
     (void)sweep_.copy_to(points_);  // A sweep that is done has points that a table takes.
-    points_origin_ = Origin::kSweep;
     is_fit_kept_ = false;
   } else {
     const FaultWords fault = words_of(status);
@@ -212,8 +215,13 @@ Instrument::Refusal Instrument::begin_evaluation(Goal goal) noexcept {
                                  "no points: INIT:SWE or TRAC:FRES:DATA"};
   constexpr Refusal kNoDevice = {ErrorCode::kDataCorruptOrStale,
                                  "no device: CALC:MOD, or INIT:SWE"};
+  constexpr Refusal kNoFit = {ErrorCode::kDataCorruptOrStale,
+                              "NORM and BIRG need the points of the fit: INIT:SWE"};
   if (origin_ == Origin::kNothing) {
     return kNoDevice;
+  }
+  if ((goal == Goal::kMonteCarlo || goal == Goal::kReport) && needs_lost_fit()) {
+    return kNoFit;
   }
   if (origin_ != Origin::kModel && points_.size() == 0) {
     return kNoPoints;
@@ -240,6 +248,14 @@ Instrument::Refusal Instrument::begin_evaluation(Goal goal) noexcept {
     end_evaluation();
   }
   return failure_;
+}
+
+/// Of a fit of before power off the evaluation takes the parameters and their u, nothing more.
+bool Instrument::needs_lost_fit() const noexcept {
+  const Identification& fit = identification_;
+  const bool is_poor = fit.chi2 > static_cast<double>(fit.dof);
+  return has_identification_ && fit.source == Source::kPoints &&
+         (settings_.distribution == Distribution::kNormal || (settings_.birge && is_poor));
 }
 
 Instrument::Refusal Instrument::failure_of_evaluation() const noexcept {

@@ -146,11 +146,6 @@ class Instrument {
     double times_s[kMaxSwitches];
     SwitchingSignal signal;
   };
-  /// A table of points while it grows.
-  struct TableWorkspace {
-    FrequencyResponse response;
-    double numbers[5 * kMaxPoints];
-  };
   /// A record on its way to the store or back.
   struct RecordWorkspace {
     std::uint8_t frame[RecordStore::kFrameBytes + kMaxSavedSettingsBytes];
@@ -168,7 +163,7 @@ class Instrument {
     SweepWorkspace sweep;
     FixedPointWorkspace fixed_point;
     SignalWorkspace signal;
-    TableWorkspace table;
+    FrequencyResponse table;  // While it grows.
     SelfTestWorkspace self_test;
     RecordWorkspace record;
   };
@@ -187,6 +182,7 @@ class Instrument {
   Refusal begin_sweep() noexcept;
   Refusal begin_evaluation(Goal goal) noexcept;
   Refusal begin_fixed_point() noexcept;
+  bool needs_lost_fit() const noexcept;
   Refusal failure_of_evaluation() const noexcept;
   void step_fixed_point() noexcept;
   double fixed_point_energy(std::size_t iterate) noexcept;
@@ -226,7 +222,7 @@ class Instrument {
   Goal goal_ = Goal::kModel;
   Job job_ = Job::kNone;
   Origin origin_ = Origin::kNothing;         // Of the device that is evaluated.
-  Origin points_origin_ = Origin::kNothing;  // Of the points.
+  Origin points_origin_ = Origin::kNothing;  // Of the points that FETCh answers.
   bool has_identification_ = false;
   bool is_fit_kept_ = false;          // The fit of these points is in the store.
   bool is_background_ = false;        // The job was begun by INITiate.
