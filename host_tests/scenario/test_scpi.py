@@ -3,6 +3,7 @@
 usage: test_scpi.py PROGRAM DATA_DIRECTORY [unittest arguments]
 """
 
+import os
 import re
 import signal
 import socket
@@ -74,6 +75,17 @@ class ScpiPipe(ProgramTest):
             self.assertEqual(process.stderr.read(), b"")
 
 
+    def test_a_reader_that_goes_away_while_a_query_is_computed(self) -> None:
+        with subprocess.Popen([PROGRAM, "scpi"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE) as process:
+            process.stdin.write(f"CALC:MOD {MODEL};:CALC:MCAR:TRI 1000000000;*IDN?;:CALC:MCAR?\n".encode())
+            process.stdin.flush()
+            self.assertEqual(process.stdout.read(5), b"emax,")
+            process.stdout.close()
+            self.assertEqual(process.wait(timeout=PATIENCE), 3)
+            self.assertEqual(process.stderr.read(), b"")
+
+
 class ScpiReport(ProgramTest):
     def expect_report(self, arguments: list[str], scpi_arguments: list[str], text: str) -> None:
         expected = subprocess.run([PROGRAM, "report", *arguments], capture_output=True, timeout=PATIENCE,
@@ -121,6 +133,15 @@ class ScpiStore(ProgramTest):
         second = run(*store, text=b"CALC:IDEN?\nCALC:ENER:TIME?;*RCL 2;TIME?\n")
         self.assertEqual(second.stdout, first.stdout + b"0.002;0.0030000000000000001\n")
         self.assertEqual(run(text=b"*RCL 2;:SYST:ERR?\n").stdout[:5], b"-230,")
+
+    def test_a_closed_output_does_not_end_in_the_file(self) -> None:
+        store = ["--store", str(self.directory / "store")]
+        with subprocess.Popen([PROGRAM, "scpi", *store], stdin=subprocess.PIPE, stderr=subprocess.PIPE,
+                              preexec_fn=lambda: os.close(1)) as process:
+            _, errors = process.communicate(b"CALC:FILT:ORD 4;*SAV 1\n*IDN?\n", timeout=PATIENCE)
+        self.assertEqual(process.returncode, 3)
+        self.assert_one_line(errors, "standard output")
+        self.assertEqual(run(*store, text=b"*RCL 1;:CALC:FILT:ORD?\n").stdout, b"4\n")
 
     def test_another_file_is_left_as_it_is(self) -> None:
         (self.directory / "notes").write_bytes(b"my notes\n")
@@ -292,6 +313,42 @@ class ScpiTcp(ProgramTest):
             self.assertRegex(other.ask("*IDN?"), r"^emax,host,")
             other.send("ABOR")
             other.close()
+
+    def test_a_client_that_goes_with_more_behind_its_query_than_there_is_room_for(self) -> None:
+        for linger in (b"\0\0\0\0\0\0\0\0", b"\1\0\0\0\0\0\0\0"):
+            with Server() as server:
+                client = Client(server.port)
+                client.send(f"CALC:MOD {MODEL};:CALC:MCAR:TRI 1000000000;:CALC:MCAR?")
+                client.send("*IDN?\n" * 2000)
+                time.sleep(0.2)
+                client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
+                client.close()
+                other = Client(server.port)
+                self.assertRegex(other.ask("*IDN?"), r"^emax,host,")
+                other.close()
+
+    def test_a_new_client_waits_for_the_end_of_one_that_has_gone(self) -> None:
+        with Server("--pace", "1") as server:
+            client = Client(server.port)
+            client.send("INIT;*OPC?")
+            time.sleep(0.2)
+            client.close()
+            time.sleep(1.5)  # Longer than one may be stuck that does not read its answers.
+            other = Client(server.port)
+            self.assertEqual(other.ask("STAT:OPER:COND?"), "24", "what INITiate has started goes on")
+            other.close()
+
+    def test_a_client_is_told_of_one_that_reads_nothing_more(self) -> None:
+        with Server() as server:
+            client = Client(server.port)
+            client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            client.send("DIAG:RAND? 1000000")
+            client.socket.shutdown(socket.SHUT_WR)
+            other = Client(server.port)
+            self.assertEqual(other.file.read(),
+                             b"emax: another client is connected; try again when it has gone\n")
+            other.close()
+            client.close()
 
     def test_a_port_that_is_taken(self) -> None:
         with Server() as server:

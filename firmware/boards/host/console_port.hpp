@@ -30,8 +30,9 @@ class ConsolePort : public hal::ByteStream {
   /// @returns Whether there may be another peer when this one has gone.
   virtual bool serves_others() const noexcept { return false; }
 
-  /// @returns True if somebody waits for this session to end.
-  virtual bool is_awaited() const noexcept { return false; }
+  /// @returns True if nobody waits for an answer that is still being computed, or others wait for
+  /// the end of a session that has no more to say.
+  virtual bool is_left() noexcept = 0;
 
  protected:
   ConsolePort() noexcept = default;

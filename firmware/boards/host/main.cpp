@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <fcntl.h>
 #include <string>
 #include <string_view>
+#include <unistd.h>
 #include <vector>
 
 #include "emax/app/version.hpp"
@@ -141,10 +143,20 @@ Problem run(Arguments arguments) {
   return is_report ? emax::host::run_report(arguments.from(1)) : unknown_command(command);
 }
 
+// A file that is opened later must not take the place of a stream that was closed from outside.
+void hold_standard_streams() noexcept {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0) {
+      (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
+    hold_standard_streams();
     emax::host::watch_for_stop_requests();
     const std::vector<std::string_view> arguments(argv + std::min(argc, 1), argv + argc);
     return emax::host::finish(run(Arguments(arguments.data(), arguments.size())));

@@ -115,10 +115,8 @@ class ScpiJob final {
  private:
   // A session has come to its end once everything that came in is answered.
   bool goes_on(const app::Instrument& instrument) {
-    if (port_.input_ended() && instrument.is_settled()) {
-      return port_.end_session();
-    }
-    if (port_.input_ended() && instrument.is_held() && port_.is_awaited()) {
+    const bool is_done = port_.input_ended() && instrument.is_settled();
+    if (is_done || (instrument.is_held() && port_.is_left())) {
       return port_.end_session();
     }
     return port_.connected() || port_.serves_others();

@@ -67,4 +67,12 @@ void StdioStream::wait(std::chrono::microseconds time, Wishes wishes) {
   (void)::ppoll(both, 2, &timeout, nullptr);
 }
 
+bool StdioStream::is_left() noexcept {
+  pollfd output = {STDOUT_FILENO, 0, 0};
+  if (::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0) {
+    error_ = EPIPE;
+  }
+  return error_ != 0;
+}
+
 }  // namespace emax::host

@@ -21,6 +21,7 @@ class StdioStream final : public ConsolePort {
   void wait(std::chrono::microseconds time, Wishes wishes) override;
   bool input_ended() const noexcept override { return input_ended_; }
   bool end_session() noexcept override { return false; }
+  bool is_left() noexcept override;
 
   /// @returns errno of the first write that failed, 0 if none did.
   int error() const noexcept { return error_; }

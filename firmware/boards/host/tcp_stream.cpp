@@ -19,6 +19,8 @@ namespace {
 constexpr std::string_view kBusy =
     "emax: another client is connected; try again when it has gone\n";
 constexpr int kBacklog = 4;
+// A client that has closed its side and takes no answers for so long may be there for ever.
+constexpr std::chrono::seconds kPatience{1};
 
 bool is_ready(int socket, short events) noexcept {
   pollfd one = {socket, events, 0};
@@ -74,6 +76,7 @@ void TcpStream::accept_client() noexcept {
   const int yes = 1;
   ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   client_ = socket;
+  last_transfer_ = SteadyClock::now();
   input_ended_ = false;
   line_is_open_ = false;
 }
@@ -91,14 +94,23 @@ bool TcpStream::end_session() noexcept {
   return true;
 }
 
-bool TcpStream::is_awaited() const noexcept { return client_ >= 0 && is_ready(listener_, POLLIN); }
+bool TcpStream::is_left() noexcept {
+  return client_ >= 0 && has_closed(client_) && is_ready(listener_, POLLIN);
+}
+
+// Whether a new client may wait for the end of this session, so that none is turned away for one
+// that has gone.
+bool TcpStream::is_about_to_end(Wishes wishes) const noexcept {
+  const bool is_stuck = wishes.to_write && SteadyClock::now() - last_transfer_ > kPatience;
+  return has_closed(client_) && !is_stuck;
+}
 
 void TcpStream::wait(std::chrono::microseconds time, Wishes wishes) {
   if (was_dropped_) {
     was_dropped_ = false;  // The instrument sees that nobody is there before the next client comes.
     return;
   }
-  const bool listens = client_ < 0 || !has_closed(client_);
+  const bool listens = client_ < 0 || !is_about_to_end(wishes);
   const auto client_events = static_cast<short>((wishes.to_read && !input_ended_ ? POLLIN : 0) |
                                                 (wishes.to_write ? POLLOUT : 0));
   pollfd both[] = {{listens ? listener_ : -1, POLLIN, 0}, {client_, client_events, 0}};
@@ -107,10 +119,13 @@ void TcpStream::wait(std::chrono::microseconds time, Wishes wishes) {
   if (::ppoll(both, 2, &timeout, nullptr) <= 0) {
     return;
   }
-  if (input_ended_ && (both[1].revents & (POLLHUP | POLLERR)) != 0) {
+  // Where reading goes on, it finds out by itself.
+  const bool is_reading = wishes.to_read && !input_ended_;
+  if (!is_reading && (both[1].revents & (POLLHUP | POLLERR)) != 0) {
     drop_client();  // It takes no answers any more.
+    return;
   }
-  if ((both[0].revents & POLLIN) != 0 && (client_ < 0 || !has_closed(client_))) {
+  if ((both[0].revents & POLLIN) != 0 && (client_ < 0 || !is_about_to_end(wishes))) {
     accept_client();
   }
 }
@@ -123,6 +138,7 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
   if (count > 0) {
     const char last = bytes[static_cast<std::size_t>(count) - 1];
     line_is_open_ = last != '\n' && last != '\r';
+    last_transfer_ = SteadyClock::now();
     return static_cast<std::size_t>(count);
   }
   if (count < 0) {
@@ -142,6 +158,7 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
 std::size_t TcpStream::do_write(Span<const char> bytes) noexcept {
   const ssize_t count = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (count >= 0) {
+    last_transfer_ = SteadyClock::now();
     return static_cast<std::size_t>(count);
   }
   if (!is_temporary(errno)) {

@@ -15,7 +15,8 @@ namespace emax::host {
 /// Listens on 127.0.0.1 and serves one client after the other.
 ///
 /// A client that comes while another one is served is told so in one line and goes. Where the other
-/// one has closed its side already, the new one waits until it is done with.
+/// one has closed its side already, the new one waits until it is done with, unless that one
+/// has read nothing of its answers for a second.
 class TcpStream final : public ConsolePort {
  public:
   TcpStream() noexcept = default;
@@ -30,20 +31,24 @@ class TcpStream final : public ConsolePort {
   bool input_ended() const noexcept override { return client_ >= 0 && input_ended_; }
   bool end_session() noexcept override;
   bool serves_others() const noexcept override { return true; }
-  bool is_awaited() const noexcept override;
+  bool is_left() noexcept override;
 
  private:
+  using SteadyClock = std::chrono::steady_clock;
+
   std::size_t do_read(Span<char> bytes) noexcept override;
   std::size_t do_write(Span<const char> bytes) noexcept override;
   bool do_connected() const noexcept override { return client_ >= 0; }
   std::uint32_t do_take_lost_count() noexcept override { return 0; }
 
+  bool is_about_to_end(Wishes wishes) const noexcept;
   void accept_client() noexcept;
   void drop_client() noexcept;
 
   int listener_ = -1;
   int client_ = -1;
   std::uint16_t port_ = 0;
+  SteadyClock::time_point last_transfer_;
   bool was_dropped_ = false;
   bool input_ended_ = false;
   bool line_is_open_ = false;
