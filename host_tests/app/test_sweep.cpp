@@ -276,6 +276,60 @@ TEST(Sweep, OverrangeLowersTheDrive) {
   run.expect_limits_kept(settings);
 }
 
+/// Both channels hear a quarter of the drive, and once, on demand, something else.
+class EchoStream final : public emax::hal::AnalogStream {
+ public:
+  EchoStream() noexcept : AnalogStream({1e5, 10.0, 10.0, 64, 0}) {}
+  void spike(double volts) { spike_v_ = volts; }
+
+ private:
+  Status do_start() noexcept override { return Status::kOk; }
+  emax::hal::Exchange do_exchange(emax::Span<const emax::hal::Word> drive,
+                                  emax::Span<emax::hal::Frame> response) noexcept override {
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      response[i] = {drive[i] / 4, drive[i] / 4};
+    }
+    if (spike_v_ != 0.0) {
+      response[10].reference = static_cast<emax::hal::Word>(spike_v_ / 10.0 * 2147483648.0);
+      spike_v_ = 0.0;
+    }
+    frames_ += drive.size();
+    return {Status::kOk, frames_ - drive.size()};
+  }
+  std::uint32_t do_ramp_to_zero(emax::hal::Word) noexcept override { return 256; }
+  void do_stop() noexcept override {}
+
+  std::uint64_t frames_ = 0;
+  double spike_v_ = 0.0;
+};
+
+/// The drive of the first point, in the midst of which the reference sees so much.
+double drive_with_spike(double volts) {
+  SweepSettings settings;
+  settings.frequency_count = 3;
+  settings.limit_mps2 = 5.0;  // 1 V per m/s^2.
+  EchoStream stream;
+  static Sweep sweep;
+  static SweepWorkspace work;
+  EXPECT_EQ(sweep.start(settings, stream, work), Status::kOk);
+  while (!sweep.done() && sweep.stage() != SweepStage::kPoints) {
+    sweep.step(stream, work);
+  }
+  stream.spike(volts);
+  while (!sweep.done()) {
+    sweep.step(stream, work);
+  }
+  EXPECT_EQ(sweep.status(), Status::kOk);
+  return sweep.points()[0].drive_v;
+}
+
+TEST(Sweep, APeakOfEitherSignBeyondTheLimitLowersTheDrive) {
+  const double undisturbed_v = drive_with_spike(4.5);
+  EXPECT_EQ(drive_with_spike(-4.5), undisturbed_v);
+  EXPECT_LT(drive_with_spike(5.5), 0.6 * undisturbed_v);
+  EXPECT_LT(drive_with_spike(-5.5), 0.6 * undisturbed_v);
+}
+
 TEST(Sweep, WeakSignalRaisesTheDrive) {
   BenchSettings bench;
   bench.shaker.gain = 0.01;

@@ -28,6 +28,7 @@ using emax::app::PointVerdict;
 using emax::app::Repeats;
 using emax::app::SilenceRecord;
 using emax::app::SilentChannel;
+using emax::hal::Frame;
 using emax::hal::StreamFormat;
 using emax::hal::Word;
 
@@ -112,22 +113,23 @@ TEST(DriveOscillator, KeepsAmplitudeSlopeAndPhase) {
 
 TEST(SilenceRecord, FindsOffsetNoiseAndHum) {
   SilenceRecord record;
-  record.start(100000.0);
+  record.start(kFormat);
   emax::sim::Noise noise;
   noise.seed(5);
-  std::array<double, 50> reference = {};
-  std::array<double, 50> device = {};
+  std::array<Frame, 50> frames = {};
   std::uint32_t frame = 0;
   while (frame < record.frames()) {
-    for (std::size_t i = 0; i < reference.size(); ++i, ++frame) {
+    for (std::size_t i = 0; i < frames.size(); ++i, ++frame) {
       const double t = static_cast<double>(frame) / 1e5;
       const auto z = noise.pair();
-      reference[i] = 0.5 + 1e-3 * z.first + 4e-3 * std::sin(2 * kPi * 50 * t + 1.0) +
-                     2e-3 * std::cos(2 * kPi * 150 * t);
-      device[i] = -0.25 + 2e-3 * z.second + 1e-3 * std::sin(2 * kPi * 60 * t) + 5.0 * t;
+      const double reference_v = 0.5 + 1e-3 * z.first + 4e-3 * std::sin(2 * kPi * 50 * t + 1.0) +
+                                 2e-3 * std::cos(2 * kPi * 150 * t);
+      const double device_v = -0.25 + 2e-3 * z.second + 1e-3 * std::sin(2 * kPi * 60 * t) + 5.0 * t;
+      frames[i] = {static_cast<Word>(reference_v * kWordsPerVolt),
+                   static_cast<Word>(device_v * kWordsPerVolt)};
     }
     const std::size_t count = std::min<std::size_t>(50, record.frames() - frame + 50);
-    record.add(Span<const double>(reference).first(count), Span<const double>(device).first(count));
+    record.add(Span<const Frame>(frames).first(count));
   }
   const SilentChannel r = record.reference();
   // 20 000 samples: 1e-3/sqrt(20000) = 7e-6; a standard deviation to 0.5 %.
@@ -145,7 +147,7 @@ TEST(SilenceRecord, FindsOffsetNoiseAndHum) {
 
 TEST(SilenceRecord, EmptyGivesZeros) {
   SilenceRecord record;
-  record.start(200.0);  // Most lines are beyond half of it.
+  record.start({200.0, 10.0, 10.0, 64, 0});  // Most lines are beyond half of it.
   EXPECT_EQ(record.reference().noise_v, 0.0);
   EXPECT_EQ(record.device().hum_v[5], 0.0);
 }

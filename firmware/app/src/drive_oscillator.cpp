@@ -1,6 +1,8 @@
 // The drive's phase, ramps and words.
 #include "emax/app/drive_oscillator.hpp"
 
+#include <algorithm>
+
 #include "emax/elementary.hpp"
 #include "emax/units.hpp"
 
@@ -15,8 +17,9 @@ constexpr double kRampShare = 0.09;  // The rest covers rounding to words.
 constexpr double kSteepest = 1.5;    // Slope of a^2 (3 - 2a) in the middle.
 constexpr double kAmplitudeShare = 0.999;
 
-hal::Word to_word(double value) noexcept {
-  const double word = floor(value * kWordScale + 0.5);
+// To the nearest; a conversion drops what follows the point.
+hal::Word to_word(double words) noexcept {
+  const double word = words < 0.0 ? words - 0.5 : words + 0.5;
   return static_cast<hal::Word>(word < kMaxWord ? word : kMaxWord);
 }
 
@@ -109,26 +112,37 @@ void DriveOscillator::end_ramp() noexcept {
   }
 }
 
-// At most as many frames as the ramp that runs has left. The phase is set anew for each call.
+// At most as many frames as the ramp that runs has left. The phase is set anew for each call, and
+// goes on by sin(x + h) = 2 cos(h) sin(x) - sin(x - h). The rounding of cos(h) costs the last of 64
+// frames 64 * 1.1e-16/h of the amplitude: at 30 Hz and 100 kS/s 4e-12, a hundredth of a word.
 void DriveOscillator::emit(Span<hal::Word> block) noexcept {
+  const Ramp& ramp = down_.frames > 0 ? down_ : up_;
+  const bool is_silent = from_v_ == 0.0 && ramp.frames == 0;
+  if (is_silent) {
+    std::fill(block.begin(), block.end(), 0);
+    return;  // The phase stands still, which does not show.
+  }
   const double turns =
       start_turns_ + static_cast<double>(frames_) * frequency_hz_ / sample_rate_hz_;
   const SinCos angle = sincos(kTwoPi * (turns - floor(turns)));
-  double cosine = angle.cos;
   double sine = angle.sin;
-  const Ramp& ramp = down_.frames > 0 ? down_ : up_;
+  double before = angle.sin * step_cosine_ - angle.cos * step_sine_;
+  const double words_per_volt = kWordScale / full_scale_v_;
+  const double twice_step_cosine = 2.0 * step_cosine_;
   const double per_frame = ramp.frames > 0 ? 1.0 / static_cast<double>(ramp.frames) : 0.0;
+  const double from = from_v_ * words_per_volt;
+  const double change = (ramp.to_v - from_v_) * words_per_volt;
   for (hal::Word& word : block) {
-    double amplitude = from_v_;
+    double amplitude = from;
     if (ramp.frames > 0) {
       ++ramp_frame_;
       const double a = static_cast<double>(ramp_frame_) * per_frame;
-      amplitude += (ramp.to_v - from_v_) * (a * a * (3.0 - 2.0 * a));
+      amplitude += change * (a * a * (3.0 - 2.0 * a));
     }
-    word = to_word(amplitude * sine / full_scale_v_);
-    const double before = cosine;
-    cosine = before * step_cosine_ - sine * step_sine_;
-    sine = before * step_sine_ + sine * step_cosine_;
+    word = to_word(amplitude * sine);
+    const double next = twice_step_cosine * sine - before;
+    before = sine;
+    sine = next;
   }
   frames_ += block.size();
 }

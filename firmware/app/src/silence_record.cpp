@@ -5,6 +5,11 @@
 #include "emax/units.hpp"
 
 namespace emax::app {
+namespace {
+
+constexpr double kWordScale = 2147483648.0;
+
+}  // namespace
 
 double SilentChannel::hum_in_fit_v(double frequency_hz, double duration_s) const noexcept {
   double squares = 0.0;
@@ -17,49 +22,58 @@ double SilentChannel::hum_in_fit_v(double frequency_hz, double duration_s) const
   return sqrt(squares);
 }
 
-void SilenceRecord::start(double sample_rate_hz) noexcept {
-  half_ = static_cast<std::uint32_t>(floor(0.5 * kDuration_s * sample_rate_hz)) + 1u;
+void SilenceRecord::start(const hal::StreamFormat& format) noexcept {
+  half_ = static_cast<std::uint32_t>(floor(0.5 * kDuration_s * format.sample_rate_hz)) + 1u;
   frames_ = 0;
-  Channel* const channels[] = {&reference_, &device_};
-  for (Channel* channel : channels) {
-    channel->first_sum_v = 0.0;
-    channel->second_sum_v = 0.0;
-    for (std::size_t i = 0; i < kHumLines; ++i) {
-      // A line beyond half the sample rate is refused, and its fit stays without a result.
-      channel->fits[i] = SineFit();
-      (void)channel->fits[i].start(kHum_hz[i], sample_rate_hz);
-    }
+  rise_ = Rise();
+  volts_per_word_ = format.input_full_scale_v / kWordScale;
+  for (std::size_t i = 0; i < kHumLines; ++i) {
+    // A line beyond half the sample rate is refused, and its fit stays without a result.
+    fits_[i] = FrameSineFit();
+    (void)fits_[i].start(kHum_hz[i], format);
   }
 }
 
-void SilenceRecord::add(Span<const double> reference_v, Span<const double> device_v) noexcept {
-  add(reference_, reference_v);
-  add(device_, device_v);
-  frames_ += static_cast<std::uint32_t>(reference_v.size());
-}
-
-void SilenceRecord::add(Channel& channel, Span<const double> samples_v) const noexcept {
-  for (std::size_t i = 0; i < samples_v.size(); ++i) {
-    (frames_ + i < half_ ? channel.first_sum_v : channel.second_sum_v) += samples_v[i];
+void SilenceRecord::add(Span<const hal::Frame> frames) noexcept {
+  for (const hal::Frame& frame : frames) {
+    const std::int32_t sign = frames_ < half_ ? -1 : 1;
+    rise_.reference += std::int64_t{sign} * frame.reference;
+    rise_.device += std::int64_t{sign} * frame.device;
+    ++frames_;
   }
-  for (SineFit& fit : channel.fits) {
-    fit.add(samples_v);
+  for (FrameSineFit& fit : fits_) {
+    fit.add(frames);
   }
 }
 
-SilentChannel SilenceRecord::evaluate(const Channel& record) const noexcept {
+SilentChannel SilenceRecord::reference() const noexcept {
+  Lines lines;
+  for (std::size_t i = 0; i < kHumLines; ++i) {
+    lines[i] = fits_[i].reference();
+  }
+  return evaluate(lines, rise_.reference);
+}
+
+SilentChannel SilenceRecord::device() const noexcept {
+  Lines lines;
+  for (std::size_t i = 0; i < kHumLines; ++i) {
+    lines[i] = fits_[i].device();
+  }
+  return evaluate(lines, rise_.device);
+}
+
+SilentChannel SilenceRecord::evaluate(const Lines& lines, std::int64_t rise) const noexcept {
   SilentChannel channel;
-  const Fits& fits = record.fits;
-  const SineFitResult first = fits[0].result();
+  const SineFitResult& first = lines[0];
   if (first.samples == 0) {
     return channel;
   }
   channel.offset_v = first.offset_v;
-  channel.drift_v = (record.second_sum_v - record.first_sum_v) / static_cast<double>(half_);
+  channel.drift_v = volts_per_word_ * static_cast<double>(rise) / static_cast<double>(half_);
   // Without the first line; the other lines are taken out below.
   double variance = first.residual_std_v * first.residual_std_v;
   for (std::size_t i = 1; i < kHumLines; ++i) {
-    const double amplitude = fits[i].result().amplitude_v;
+    const double amplitude = lines[i].amplitude_v;
     variance -= 0.5 * amplitude * amplitude;
   }
   variance = variance > 0.0 ? variance : 0.0;
@@ -67,7 +81,7 @@ SilentChannel SilenceRecord::evaluate(const Channel& record) const noexcept {
   // Noise alone looks like a line: its part of the square of an amplitude.
   const double by_noise = 4.0 * variance / static_cast<double>(first.samples);
   for (std::size_t i = 0; i < kHumLines; ++i) {
-    const double amplitude = fits[i].result().amplitude_v;
+    const double amplitude = lines[i].amplitude_v;
     const double square = amplitude * amplitude - by_noise;
     channel.hum_v[i] = square > 0.0 ? sqrt(square) : 0.0;
   }

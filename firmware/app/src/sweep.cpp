@@ -1,6 +1,8 @@
 // The sequencer: what one block does, and what comes after what.
 #include "emax/app/sweep.hpp"
 
+#include <algorithm>
+
 #include "emax/elementary.hpp"
 
 namespace emax::app {
@@ -51,7 +53,7 @@ Status Sweep::start(const SweepSettings& settings, hal::AnalogStream& stream,
   work.begin(stream.format());
   inputs_.sample_rate_hz = work.format_.sample_rate_hz;
   work.drive_.configure(work.format_, settings.drive_limit_v, settings.slew_v_per_s);
-  work.silence_.start(work.format_.sample_rate_hz);
+  work.silence_.start(work.format_);
   work.left_ = work.silence_.frames();
   stage_ = SweepStage::kSilence;
   return Status::kOk;
@@ -110,12 +112,9 @@ void Sweep::step(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
 }
 
 void Sweep::take_frames(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  const double volts = work.format_.input_full_scale_v / kWordScale;
   for (std::size_t i = 0; i < work.format_.block_frames; ++i) {
     work.reference_monitor_.add(work.frames_[i].reference);
     work.device_monitor_.add(work.frames_[i].device);
-    work.reference_v_[i] = volts * static_cast<double>(work.frames_[i].reference);
-    work.device_v_[i] = volts * static_cast<double>(work.frames_[i].device);
   }
   work.block_is_spent_ = false;
   watch(stream, work);
@@ -158,15 +157,22 @@ void Sweep::watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
   if (work.is_lowering_) {
     return;
   }
-  double peak_v = 0.0;
-  for (std::size_t i = 0; i < work.format_.block_frames; ++i) {
-    const double v = abs(work.reference_v_[i] - inputs_.silent_reference.offset_v);
-    peak_v = v > peak_v ? v : peak_v;
-  }
-  peak_v -= kNoisePeak * inputs_.silent_reference.noise_v;
+  const double peak_v = reference_peak_v(work) - kNoisePeak * inputs_.silent_reference.noise_v;
   if (full_scale || acceleration_of(peak_v, work) > settings_.limit_mps2) {
     lower_level(stream, work);
   }
+}
+
+/// The largest distance of the block from the offset, which is taken to a word.
+double Sweep::reference_peak_v(const SweepWorkspace& work) const noexcept {
+  const double volts = work.format_.input_full_scale_v / kWordScale;
+  const auto offset = static_cast<std::int64_t>(inputs_.silent_reference.offset_v / volts);
+  std::int64_t peak = 0;
+  for (std::size_t i = 0; i < work.format_.block_frames; ++i) {
+    const std::int64_t distance = work.frames_[i].reference - offset;
+    peak = std::max(peak, distance < 0 ? -distance : distance);
+  }
+  return volts * static_cast<double>(peak);
 }
 
 void Sweep::lower_level(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
@@ -181,14 +187,12 @@ void Sweep::lower_level(hal::AnalogStream& stream, SweepWorkspace& work) noexcep
 }
 
 void Sweep::consume(std::size_t from, std::size_t count, SweepWorkspace& work) noexcept {
-  const Span<const double> reference =
-      Span<const double>(work.reference_v_).from(from).first(count);
-  const Span<const double> device = Span<const double>(work.device_v_).from(from).first(count);
+  const Span<const hal::Frame> frames =
+      Span<const hal::Frame>(work.frames_).from(from).first(count);
   if (work.activity_ == Activity::kSilence) {
-    work.silence_.add(reference, device);
+    work.silence_.add(frames);
   } else if (work.activity_ == Activity::kMeasuring) {
-    work.reference_fit_.add(reference);
-    work.device_fit_.add(device);
+    work.fit_.add(frames);
   }
 }
 
@@ -202,6 +206,8 @@ void Sweep::end_activity(hal::AnalogStream& stream, SweepWorkspace& work) noexce
       work.reference_rest2_ = 0.0;
       work.device_rest2_ = 0.0;
       work.activity_ = Activity::kMeasuring;
+      // The rates were checked by `start()`.
+      (void)work.fit_.start(work.target_.frequency_hz, work.format_);
       begin_repeat(work);
       return;
     case Activity::kMeasuring:
@@ -270,9 +276,7 @@ void Sweep::drive_to(double amplitude_v, SweepWorkspace& work) noexcept {
 }
 
 void Sweep::begin_repeat(SweepWorkspace& work) noexcept {
-  // The rates were checked by `start()`.
-  (void)work.reference_fit_.start(work.target_.frequency_hz, work.format_.sample_rate_hz);
-  (void)work.device_fit_.start(work.target_.frequency_hz, work.format_.sample_rate_hz);
+  work.fit_.restart();
   work.left_ = work.target_.repeat_frames;
 }
 

@@ -45,11 +45,11 @@ double Sweep::acceleration_of(double reference_v, const SweepWorkspace& work) co
          sensitivity_at(settings_.reference, work.target_.frequency_hz);
 }
 
-Sweep::Reading Sweep::reading_of(const SineFit& fit, const SilentChannel& silent,
+Sweep::Reading Sweep::reading_of(const SineFitResult& fit, const SilentChannel& silent,
                                  const SweepWorkspace& work) noexcept {
   const double samples = static_cast<double>(work.target_.repeat_frames);
   Reading reading;
-  reading.fit = fit.result();
+  reading.fit = fit;
   reading.weak_v =
       kWeakSigmas * silent.noise_v * sqrt(2.0 / samples) +
       3.0 * silent.hum_in_fit_v(work.target_.frequency_hz, samples / work.format_.sample_rate_hz);
@@ -57,8 +57,8 @@ Sweep::Reading Sweep::reading_of(const SineFit& fit, const SilentChannel& silent
 }
 
 void Sweep::end_repeat(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  const Reading reference = reading_of(work.reference_fit_, inputs_.silent_reference, work);
-  const Reading device = reading_of(work.device_fit_, inputs_.silent_device, work);
+  const Reading reference = reading_of(work.fit_.reference(), inputs_.silent_reference, work);
+  const Reading device = reading_of(work.fit_.device(), inputs_.silent_device, work);
   if (work.repeats_.count == 0) {
     judge_first(reference, device, stream, work);
     if (done() || work.block_is_spent_) {
@@ -139,9 +139,9 @@ void Sweep::raise_drive(hal::AnalogStream& stream, SweepWorkspace& work) noexcep
 // low frequencies.
 double Sweep::offset_change_v(double reference_v, double device_v,
                               const SweepWorkspace& work) const noexcept {
-  const double ratio = norm(check_before_) > 0.0 ? magnitude(check_before_) / ratio_factor(work)
-                                                 : work.device_fit_.result().amplitude_v /
-                                                       work.reference_fit_.result().amplitude_v;
+  const double ratio = norm(check_before_) > 0.0
+                           ? magnitude(check_before_) / ratio_factor(work)
+                           : work.fit_.device().amplitude_v / work.fit_.reference().amplitude_v;
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 

@@ -31,7 +31,7 @@ class DriveOscillator {
   /// @returns The number of frames until it is there.
   std::uint32_t go_to(double frequency_hz, double amplitude_v) noexcept;
 
-  /// Fills the next block. About 12 multiplications per frame.
+  /// Fills the next block. Two multiplications per frame, six on a ramp.
   void fill(Span<hal::Word> block) noexcept;
 
   double amplitude_v() const noexcept { return target_v_; }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/frame_sine_fit.hpp"
+#include "emax/hal/analog_stream.hpp"
 #include "emax/sine_fit.hpp"
 #include "emax/span.hpp"
 
@@ -30,32 +32,32 @@ struct SilentChannel {
 
 /// Records both channels with one sine fit per line of the mains.
 ///
-/// 0.2 s are whole periods of all lines, so they do not disturb each other. 1.9 KiB.
+/// 0.2 s are whole periods of all lines, so they do not disturb each other. 4.4 KiB.
 class SilenceRecord {
  public:
   static constexpr double kDuration_s = 0.2;
 
-  void start(double sample_rate_hz) noexcept;
+  void start(const hal::StreamFormat& format) noexcept;
   /// @returns The frames that the record takes in all.
   std::uint32_t frames() const noexcept { return 2 * half_; }
-  void add(Span<const double> reference_v, Span<const double> device_v) noexcept;
-  SilentChannel reference() const noexcept { return evaluate(reference_); }
-  SilentChannel device() const noexcept { return evaluate(device_); }
+  void add(Span<const hal::Frame> frames) noexcept;
+  SilentChannel reference() const noexcept;
+  SilentChannel device() const noexcept;
 
  private:
-  using Fits = std::array<SineFit, kHumLines>;
-
-  struct Channel {
-    Fits fits;
-    double first_sum_v = 0.0;  // Of the two halves.
-    double second_sum_v = 0.0;
+  /// Sum of the words of the second half minus that of the first.
+  struct Rise {
+    std::int64_t reference = 0;
+    std::int64_t device = 0;
   };
 
-  void add(Channel& channel, Span<const double> samples_v) const noexcept;
-  SilentChannel evaluate(const Channel& record) const noexcept;
+  using Lines = std::array<SineFitResult, kHumLines>;
 
-  Channel reference_;
-  Channel device_;
+  SilentChannel evaluate(const Lines& lines, std::int64_t rise) const noexcept;
+
+  std::array<FrameSineFit, kHumLines> fits_;
+  Rise rise_;
+  double volts_per_word_ = 0.0;
   std::uint32_t half_ = 0;  // Frames of half a record.
   std::uint32_t frames_ = 0;
 };

@@ -8,6 +8,7 @@
 
 #include "emax/app/channel_monitor.hpp"
 #include "emax/app/drive_oscillator.hpp"
+#include "emax/app/frame_sine_fit.hpp"
 #include "emax/app/silence_record.hpp"
 #include "emax/app/sweep_budget.hpp"
 #include "emax/app/sweep_settings.hpp"
@@ -42,7 +43,7 @@ enum class SweepStage : std::uint8_t {
   kFailed,
 };
 
-/// What a sweep needs only while it runs: 11 KiB that the caller lends it.
+/// What a sweep needs only while it runs: 13 KiB that the caller lends it.
 ///
 /// What it holds before a start and after the end does not matter, so it may share its memory with
 /// other work that never runs at the same time.
@@ -70,15 +71,12 @@ class SweepWorkspace {
   ChannelMonitor reference_monitor_;
   ChannelMonitor device_monitor_;
   SilenceRecord silence_;
-  SineFit reference_fit_;
-  SineFit device_fit_;
+  FrameSineFit fit_;
   Target target_;
   Repeats repeats_;
   std::array<PointScatter, kMaxPoints> scatter_ = {};
   std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
   std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
-  std::array<double, hal::kMaxBlockFrames> reference_v_ = {};
-  std::array<double, hal::kMaxBlockFrames> device_v_ = {};
   Complex last_ratio_;                   // Of the frequency before; zero if there was none.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
@@ -94,7 +92,7 @@ class SweepWorkspace {
 };
 
 static_assert(std::is_trivially_copyable_v<SweepWorkspace>);
-static_assert(!kHasDefaultCapacities || sizeof(SweepWorkspace) <= 11 * 1024);
+static_assert(!kHasDefaultCapacities || sizeof(SweepWorkspace) <= 13 * 1024);
 
 /// Runs the calibration block by block; nothing ever waits longer than one block.
 ///
@@ -109,7 +107,7 @@ static_assert(!kHasDefaultCapacities || sizeof(SweepWorkspace) <= 11 * 1024);
 /// begins anew. Overrange halves the drive and with it the level, for this frequency and, doubling
 /// again, for those after it.
 ///
-/// Results take at most 11 KiB and the workspace as much, whatever the number of samples, and no
+/// Results take at most 11 KiB and the workspace 13, whatever the number of samples, and no
 /// call takes longer for a longer record. From its start to its end a sweep needs the same stream
 /// and the same workspace, which nobody else may write meanwhile.
 /// Every end, good or bad, leaves the drive at zero: a normal one along a ramp, a fault along the
@@ -207,6 +205,7 @@ class Sweep {
   void reset() noexcept;
   void take_frames(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
   void watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
+  double reference_peak_v(const SweepWorkspace& work) const noexcept;
   void lower_level(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
   static void consume(std::size_t from, std::size_t count, SweepWorkspace& work) noexcept;
   void end_activity(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
@@ -215,7 +214,7 @@ class Sweep {
   void drive_to(double amplitude_v, SweepWorkspace& work) noexcept;
   static void begin_repeat(SweepWorkspace& work) noexcept;
   void end_repeat(hal::AnalogStream& stream, SweepWorkspace& work) noexcept;
-  static Reading reading_of(const SineFit& fit, const SilentChannel& silent,
+  static Reading reading_of(const SineFitResult& fit, const SilentChannel& silent,
                             const SweepWorkspace& work) noexcept;
   void judge_first(const Reading& reference, const Reading& device, hal::AnalogStream& stream,
                    SweepWorkspace& work) noexcept;
