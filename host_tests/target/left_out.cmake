@@ -29,10 +29,10 @@ emax_leave_out(test_sim_noise
   SimNoise.DensityIsNormal
   SimNoise.IsWhite)
 
-# Slow ones, measured; the limit keeps all the others together at a minute and a half, or two and a half.
+# Slow ones, measured; the limit keeps all the others together at a minute and a half, or one.
 set(EMAX_SLOW_TEST_S 1.3)
 if(EMAX_BOARD STREQUAL "mps2_an386")
-  set(EMAX_SLOW_TEST_S 2.5)
+  set(EMAX_SLOW_TEST_S 1.5)
 endif()
 get_property(left_out GLOBAL PROPERTY EMAX_LEFT_OUT_TESTS)
 list(JOIN left_out "\n" left_out)

@@ -38,6 +38,7 @@ def main() -> int:
         print(f"{Path(image).name}: {len(seconds) - len(slow)} tests of {kept_s:.1f} s, {len(slow)} slow", flush=True)
         if len(slow) == len(seconds):
             lines.append(f"{Path(image).name} *")
+            continue
         for test, s in slow.items():
             lines.append(f"{Path(image).name} {test} {'more than ' if s >= 2 * limit_s else ''}{s:.1f} s")
     list_file.write_text(
