@@ -1,5 +1,7 @@
 // The line about a fault, and what happens in which order. This file is the board.
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -51,7 +53,19 @@ TEST(FaultReport, LeavesOutWhatFindsNoRoom) {
   EXPECT_EQ(std::string(text.data(), text.size()), "\nfault: Bus#");
 }
 
-// The count of faults is that of a board, which no second test can reset.
+// The count of faults is that of a board, which no second test can reset: each has its process.
+TEST(FaultReport, WatchdogAfterAFaultKnowsWhereTheDriveIs) {
+  const auto fault_then_watchdog = [] {
+    report_fault("BusFault", {});
+    events.clear();
+    report_fault("watchdog", {});
+    std::fputs(events.c_str(), stderr);
+    std::exit(0);
+  };
+  EXPECT_EXIT(fault_then_watchdog(), testing::ExitedWithCode(0),
+              "^\nfault: watchdog, drive at zero,\n$");
+}
+
 TEST(FaultReport, DriveComesFirstAndOnlyOnce) {
   is_faulting_on_the_way = true;
   report_fault("first", {});

@@ -33,8 +33,10 @@ class Line {
   std::size_t count_ = 0;
 };
 
-// How many faults there have been since the board started.
+// How many faults there have been since the board started, and whether the first one led the drive
+// to zero, where nothing has moved it since.
 std::uint8_t fault_count = 0;
+bool is_at_zero = false;
 
 }  // namespace
 
@@ -59,7 +61,9 @@ void report_fault(const char* kind, Span<const FaultNumber> numbers) noexcept {
   if (fault_count > 2) {
     return;
   }
-  const bool is_at_zero = fault_count == 1 && lead_drive_to_zero();
+  if (fault_count == 1) {
+    is_at_zero = lead_drive_to_zero();
+  }
   char text[kFaultLineRoom];
   write_polled({text, format_fault_line(kind, is_at_zero, numbers, text)});
 }

@@ -44,13 +44,16 @@ Status Board::start() noexcept {
 
 Board& board() noexcept { return instance; }
 
+// One at a time: what else is pending comes back at once.
 void on_external_interrupt() noexcept {
-  while (const std::uint32_t number = reg(kPlicClaim)) {
-    if (number == kUart0Interrupt) {
-      instance.console().on_interrupt();
-    }
-    reg(kPlicClaim) = number;
+  const std::uint32_t number = reg(kPlicClaim);
+  if (number == 0) {
+    return;
   }
+  if (number == kUart0Interrupt) {
+    instance.console().on_interrupt();
+  }
+  reg(kPlicClaim) = number;
 }
 
 void reset() noexcept {

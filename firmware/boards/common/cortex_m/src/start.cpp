@@ -36,8 +36,11 @@ constexpr std::uint32_t kMpuEnable = 1U << 0;
 constexpr std::uint32_t kMpuDefaultMap = 1U << 2;
 constexpr std::uint32_t kMpuBaseValid = 1U << 4;
 // Log2 of the size less one, and the access: none and never executed, or reading and executing.
+// Code is normal memory, as without the unit: a Cortex-M7 caches it, and takes it where it is not
+// aligned.
+constexpr std::uint32_t kWriteThrough = 1U << 17;
 constexpr std::uint32_t kGuardRegion = (11U << 1) | (1U << 28) | 1U;
-constexpr std::uint32_t kCodeRegion = (17U << 1) | (6U << 24) | 1U;
+constexpr std::uint32_t kCodeRegion = (17U << 1) | (6U << 24) | kWriteThrough | 1U;
 static_assert(kGuardBytes == 1U << 12);
 
 constexpr std::uint32_t kExceptionMask = 0x1FF;
