@@ -4,7 +4,10 @@
 execute_process(
   COMMAND arm-none-eabi-g++ -dumpversion
   OUTPUT_VARIABLE version
-  OUTPUT_STRIP_TRAILING_WHITESPACE
-  COMMAND_ERROR_IS_FATAL ANY)
+  RESULT_VARIABLE result
+  OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "The C++ headers come from arm-none-eabi-g++, which is not installed; run toolchains/install.sh.")
+endif()
 set(headers /usr/include/newlib/c++/${version})
 set(EMAX_LIBSTDCXX_FLAGS "-nostdinc++ -isystem ${headers} -isystem ${headers}/arm-none-eabi/thumb/nofp")
