@@ -288,6 +288,13 @@ class GoodModel(ProgramTest):
         self.assertEqual([point[0] for point in trend["points"]], [0.001, 0.002, 0.003])
         self.assertGreater(trend["slope"], 0)
 
+    def test_no_absolute_error_rather_than_a_wrong_one(self):
+        # 24000 periods of the resonance: beyond what is sampled for the integral of |k|.
+        long = ["--model", "1.037,4073,0.3182", "--method", "paper", "--step", "1e-3", "--time", "6", "--trend", "none"]
+        self.assertIsNone(self.json_of(*long)["energy"]["absolute_error"])
+        text = self.succeed("report", *long, "--out", "out")
+        self.assertRegex(text, r"Largest \|y\| +not computed: k moves too often for so long a T\n")
+
     def test_fields_of_results(self):
         results = self.json_of(*MODEL, "--trials", "1000", "--trend", "0.001,0.002")
         self.assertLessEqual({"version", "model", "filter", "energy", "monte_carlo", "trend"}, set(results))

@@ -172,6 +172,7 @@ Status Evaluation::begin(const Settings& settings, Goal goal) noexcept {
   device_ = {};
   peak_ = {};
   settling_ = {};
+  has_absolute_error_ = false;
   absolute_error_ = 0.0;
   clear(maximum_);
   trace_count_ = 0;

@@ -112,8 +112,7 @@ double Evaluation::adaptive_progress(const AdaptiveTrials& adaptive) const noexc
 void Evaluation::begin_model(EvaluationWorkspace& workspace) noexcept {
   auto* const part = new (&workspace.part_.model) EvaluationWorkspace::ModelPart;
   part->peak.start(model_);
-  // Without an answer for so long a T the value stays 0.
-  (void)part->absolute_error.start(model_, settings_.duration_s);
+  has_absolute_error_ = part->absolute_error.start(model_, settings_.duration_s) == Status::kOk;
   stage_ = Stage::kModel;
 }
 

@@ -1,7 +1,6 @@
 // The commands that answer what was measured or computed, and see to it that it is.
 #include <limits>
 
-#include "emax/absolute_error.hpp"
 #include "emax/capacity.hpp"
 #include "emax/elementary.hpp"
 #include "emax/units.hpp"
@@ -347,7 +346,7 @@ void InstrumentCommands::absolute_error(Instrument& i, Call& call) noexcept {
   if (!provide(i, call, Goal::kModel)) {
     return;
   }
-  if (AbsoluteError().start(i.evaluation_.model(), i.settings_.duration_s) != Status::kOk) {
+  if (!i.evaluation_.has_absolute_error()) {
     call.fail(ErrorCode::kSettingsConflict, "k moves too often for so long a T: shorten it");
     return;
   }

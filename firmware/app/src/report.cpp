@@ -468,8 +468,13 @@ void write_energy(const Evaluation& evaluation, ReportWriter& out) noexcept {
         .text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
   }
   write_bound(evaluation, out);
-  out.label("Largest |y|").general(evaluation.absolute_error_v(), 7);
-  out.text(" V, by another signal: a times the integral of |k|").line();
+  out.label("Largest |y|");
+  if (evaluation.has_absolute_error()) {
+    out.general(evaluation.absolute_error_v(), 7);
+    out.text(" V, by another signal: a times the integral of |k|").line();
+  } else {
+    out.text("not computed: k moves too often for so long a T").line();
+  }
 }
 
 // Monte Carlo

@@ -223,7 +223,11 @@ void write_energy(const Evaluation& evaluation, JsonWriter& json) noexcept {
   }
   json.close_row();
   json.integer("iterations", maximum.iterations);
-  json.number("absolute_error", evaluation.absolute_error_v());
+  if (evaluation.has_absolute_error()) {
+    json.number("absolute_error", evaluation.absolute_error_v());
+  } else {
+    json.null("absolute_error");
+  }
   json.close();
 }
 

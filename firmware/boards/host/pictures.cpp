@@ -382,7 +382,9 @@ void write_signal(const Picture& picture, const Evaluation& evaluation, TextWrit
   const double end_s = evaluation.settings().duration_s;
   const double limit = evaluation.limit_mps2();
   const Scale time = time_scale(end_s);
-  const Scale error = prefixed(evaluation.absolute_error_v(), "V");
+  const double full_v = evaluation.device().estimate.sensitivity * limit;
+  const Scale error =
+      prefixed(evaluation.has_absolute_error() ? evaluation.absolute_error_v() : full_v, "V");
   const Scale acceleration = scaled(limit, "m/s²");
   const double shown_limit = acceleration.factor * limit;
   write_start(out, picture, 560);

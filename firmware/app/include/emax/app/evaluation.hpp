@@ -256,7 +256,9 @@ class Evaluation {
   /// @returns E_0, E_1, ... of the fixed point for a = 1; Method::kPaper only.
   Span<const double> trace() const noexcept { return Span<const double>(trace_, trace_count_); }
 
-  /// The largest |y(t)| of any signal within +-a of this T, in V.
+  /// Not for a T in which k moves more often than `AbsoluteError` takes samples.
+  bool has_absolute_error() const noexcept { return has_absolute_error_; }
+  /// The largest |y(t)| of any signal within +-a of this T, in V; 0 if there is none.
   double absolute_error_v() const noexcept { return limit_mps2_ * absolute_error_; }
 
   bool has_monte_carlo() const noexcept { return has_monte_carlo_; }
@@ -366,6 +368,7 @@ class Evaluation {
   std::size_t trace_count_ = 0;
   std::size_t trend_done_ = 0;
   double limit_mps2_ = 0.0;
+  bool has_absolute_error_ = false;
   double absolute_error_ = 0.0;  // For a = 1, as the bound.
   double bound_ = 0.0;
   double progress_ = 0.0;
