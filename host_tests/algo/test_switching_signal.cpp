@@ -83,7 +83,7 @@ TEST(SwitchingSignalEnergy, IsTheIntegralOfTheSquaredOutput) {
   }
 }
 
-TEST(SwitchingSignalEnergy, DifferenceOfEnergiesFollowsFromSquareErrorsAtThreeGains) {
+TEST(SwitchingSignalEnergy, DifferenceFollowsFromSquareErrorsAtThreeGains) {
   // E(ya - g yf) = Ea - 2 g C + g^2 Ef, so Ef is a second difference over the gain; E(ya) - E(yf) =
   // Ea - Ef.
   const SwitchingSignal signal = signal_of({0.3e-3, 0.8e-3, 1.7e-3}, 2e-3);
