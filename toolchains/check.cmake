@@ -47,11 +47,6 @@ add_test(NAME host-gcc-native.gates.contraction
     ${native}/algo/libemax_base.a ${native}/algo/libemax_algo.a ${native}/hal/libemax_hal.a
     ${native}/hal/sim/libemax_sim.a ${native}/firmware/app/libemax_app.a)
 
-# Each configuration compares its program with the reference, which has tests of its own.
-add_test(NAME reference.test_reference
-  COMMAND ${EMAX_PYTHON} -B -m unittest --verbose test_reference
-  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/host_tests/reference)
-
 find_program(EMAX_CLANG_FORMAT clang-format REQUIRED)
 find_program(EMAX_CLANG_TIDY clang-tidy REQUIRED)
 set(areas algo hal firmware host_tests)

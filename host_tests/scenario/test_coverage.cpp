@@ -15,18 +15,6 @@ namespace {
 
 using emax::Status;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kIsSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kIsSanitized = true;
-#else
-constexpr bool kIsSanitized = false;
-#endif
-#else
-constexpr bool kIsSanitized = false;
-#endif
-
 constexpr std::uint64_t kBenches = 500;
 // Of a binomial distribution with 500 trials of 0.95, 99.9 % lie within.
 constexpr int kFewest = 458;
@@ -46,9 +34,6 @@ void count(const emax::WlspFit& fit, const emax::sim::Device& truth, Inside& ins
 }
 
 TEST(Coverage, OfFiveHundredBenches) {
-  if (kIsSanitized) {
-    GTEST_SKIP() << "ten times slower, and the numbers are the same; test_sweep watches the memory";
-  }
   static emax::sim::SimBench bench;
   static emax::app::Sweep sweep;
   static emax::app::SweepWorkspace work;
