@@ -40,6 +40,25 @@ double sine_at(std::size_t sample) noexcept {
   return sincos(kTwoPi * kFrequency_hz / kRate_hz * static_cast<double>(sample)).sin;
 }
 
+/// As a sweep does it, of both channels.
+Status count_frame_sine_fit(app::FrameSineFit& fit, Rows& rows) noexcept {
+  const hal::StreamFormat format = board::board().stream().format();
+  const Status status = fit.start(kFrequency_hz, format);
+  Ticks ticks = 0;
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    std::array<hal::Frame, kBlock> frames = {};
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const auto word = static_cast<hal::Word>(kDrive * sine_at(block * kBlock + i));
+      frames[i] = {word, word};
+    }
+    ticks += ticks_of([&] { fit.add(frames); });
+  }
+  rows.add("frame_sine_fit_sample", mean(ticks, 2 * kBlocks * kBlock));
+  rows.add("frame_sine_fit_result",
+           instructions_in([&] { number_sink = fit.reference().amplitude_v; }));
+  return status;
+}
+
 Status count_sine_fit(SineFit& fit, Rows& rows) noexcept {
   const Status status = fit.start(kFrequency_hz, kRate_hz);
   Ticks ticks = 0;
@@ -129,6 +148,7 @@ Status count_kernels(Rows& rows) noexcept {
   Kernels& kernels = memory().kernels.make();
   Status status = kernels.model.set(kDevice, kFilter, Criterion::kIntegralSquareError);
   const auto then = [&status](Status next) { status = status == Status::kOk ? next : status; };
+  then(count_frame_sine_fit(kernels.frame_fit, rows));
   then(count_sine_fit(kernels.fit, rows));
   then(count_bench_frame(rows));
   then(count_decimal(rows));

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "emax/app/evaluation.hpp"
+#include "emax/app/frame_sine_fit.hpp"
 #include "emax/app/in_place.hpp"
 #include "emax/app/sweep.hpp"
 #include "emax/energy_bound.hpp"
@@ -25,6 +26,7 @@ inline constexpr std::size_t kPaperCells = 1000;
 
 struct Kernels {
   ModalModel model;
+  app::FrameSineFit frame_fit;
   SineFit fit;
   PhiBuffer<kStoredCells> stored_phi;
   PhiOperator phi;

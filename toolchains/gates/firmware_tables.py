@@ -32,8 +32,10 @@ LONG_PARTS = ["energies-10", "steps-2", "steps-10", "report"]
 LEFT_OUT = {"mps2_an386": {"steps-10", "report"}}
 
 ROWS = {
-    "sine_fit_sample": "sine fit, one sample of one channel",
-    "sine_fit_result": "sine fit, its result",
+    "frame_sine_fit_sample": "sine fit of a sweep, in integers, one sample of one channel",
+    "frame_sine_fit_result": "its result for one channel",
+    "sine_fit_sample": "`SineFit`, in `double`, one sample of one channel",
+    "sine_fit_result": "its result",
     "sweep_frame": "sweep, one frame: drive, two sine fits, checks",
     "bench_frame": "simulated bench, one frame",
     "decimal_format": "17 digits of a number as text",
