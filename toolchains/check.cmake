@@ -58,8 +58,8 @@ add_test(NAME style.format COMMAND ${EMAX_CLANG_FORMAT} --dry-run --Werror ${for
 add_custom_target(format COMMAND ${EMAX_CLANG_FORMAT} -i ${formatted} COMMENT "Formats all sources in place")
 
 file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
-  algo/src/*.cpp hal/src/*.cpp hal/sim/src/*.cpp
-  firmware/app/src/*.cpp firmware/app/src/scpi/*.cpp firmware/boards/host/*.cpp)
+  algo/src/*/*.cpp hal/src/*.cpp hal/sim/src/*.cpp
+  firmware/app/src/*/*.cpp firmware/desk/*/*.cpp firmware/boards/host/*.cpp)
 foreach(source IN LISTS tidied)
   add_test(NAME style.tidy.${source}
     COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-clang ${PROJECT_SOURCE_DIR}/${source})

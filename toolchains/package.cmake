@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 # The version that reports and files carry.
-file(STRINGS ${PROJECT_SOURCE_DIR}/firmware/app/include/emax/app/version.hpp version_line REGEX "kVersion")
+file(STRINGS ${PROJECT_SOURCE_DIR}/firmware/app/include/emax/app/base/version.hpp version_line REGEX "kVersion")
 string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${version_line}")
 
 set_target_properties(emax_arithmetic PROPERTIES EXPORT_NAME arithmetic)

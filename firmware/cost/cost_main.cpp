@@ -5,11 +5,11 @@
 #include <array>
 #include <cstddef>
 
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/text_writer.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/semihosting.hpp"
-#include "emax/span.hpp"
-#include "emax/status.hpp"
 
 #include "command_line.hpp"
 #include "instruction_counter.hpp"

@@ -1,7 +1,7 @@
 // Search, bound and trials, called as the evaluation calls them.
-#include "emax/energy_bound.hpp"
-#include "emax/energy_search.hpp"
-#include "emax/energy_trials.hpp"
+#include "emax/bound/energy_bound.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
 
 #include "instruction_counter.hpp"
 #include "memory.hpp"

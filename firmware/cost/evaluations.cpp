@@ -1,11 +1,11 @@
 // Evaluations step by step, as the instrument runs them.
 #include <array>
 
-#include "emax/accelerometer.hpp"
-#include "emax/app/evaluation.hpp"
-#include "emax/app/settings.hpp"
-#include "emax/app/sweep_settings.hpp"
-#include "emax/frequency_response.hpp"
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/settings/settings.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/model/accelerometer.hpp"
 
 #include "instruction_counter.hpp"
 #include "memory.hpp"

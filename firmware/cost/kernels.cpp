@@ -1,12 +1,12 @@
 // The innermost pieces of work.
 #include <array>
 
+#include "emax/base/decimal.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 #include "emax/board/board.hpp"
-#include "emax/decimal.hpp"
-#include "emax/elementary.hpp"
-#include "emax/fixed_point.hpp"
+#include "emax/energy/fixed_point.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/units.hpp"
 
 #include "instruction_counter.hpp"
 #include "memory.hpp"

@@ -5,18 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/app/evaluation.hpp"
-#include "emax/app/frame_sine_fit.hpp"
-#include "emax/app/in_place.hpp"
-#include "emax/app/sweep.hpp"
-#include "emax/energy_bound.hpp"
-#include "emax/energy_search.hpp"
-#include "emax/energy_trials.hpp"
-#include "emax/frequency_response.hpp"
-#include "emax/phi_buffer.hpp"
-#include "emax/phi_operator.hpp"
-#include "emax/signs.hpp"
-#include "emax/sine_fit.hpp"
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/measure/frame_sine_fit.hpp"
+#include "emax/app/measure/sweep.hpp"
+#include "emax/base/signs.hpp"
+#include "emax/bound/energy_bound.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/energy/phi_buffer.hpp"
+#include "emax/energy/phi_operator.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/identify/sine_fit.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
 
 namespace emax::cost {
 

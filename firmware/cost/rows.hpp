@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/app/text_writer.hpp"
-#include "emax/modal_model.hpp"
-#include "emax/status.hpp"
+#include "emax/app/base/text_writer.hpp"
+#include "emax/base/status.hpp"
+#include "emax/model/modal_model.hpp"
 
 namespace emax::cost {
 

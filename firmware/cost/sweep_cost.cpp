@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "emax/app/sweep.hpp"
-#include "emax/app/sweep_settings.hpp"
+#include "emax/app/measure/sweep.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/hal/analog_stream.hpp"
 
 #include "instruction_counter.hpp"

@@ -1,7 +1,7 @@
 // The largest error energy of one accelerometer, in static memory and in short steps.
 #include <cstdio>
 
-#include "emax/energy_search.hpp"
+#include "emax/energy/energy_search.hpp"
 
 static emax::ModalModel model;
 static emax::EnergySearch search;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "emax/app/sweep.hpp"
+#include "emax/app/measure/sweep.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "hal/bench_run.hpp"

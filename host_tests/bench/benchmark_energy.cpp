@@ -2,12 +2,12 @@
 #include <benchmark/benchmark.h>
 #include <cstddef>
 
-#include "emax/elementary.hpp"
-#include "emax/energy_search.hpp"
-#include "emax/energy_trials.hpp"
-#include "emax/fixed_point.hpp"
-#include "emax/phi_buffer.hpp"
-#include "emax/switching_signal.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/energy/fixed_point.hpp"
+#include "emax/energy/phi_buffer.hpp"
+#include "emax/energy/switching_signal.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
 
 #include "support/paper_device.hpp"
 

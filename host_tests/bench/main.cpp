@@ -3,17 +3,17 @@
 #include <cstddef>
 #include <string>
 
-#include "emax/app/evaluation.hpp"
-#include "emax/energy_search.hpp"
-#include "emax/energy_trials.hpp"
-#include "emax/frequency_response.hpp"
-#include "emax/modal_model.hpp"
-#include "emax/monte_carlo.hpp"
-#include "emax/phi_buffer.hpp"
-#include "emax/phi_operator.hpp"
-#include "emax/switching_signal.hpp"
-#include "emax/wichmann_hill.hpp"
-#include "emax/wlsp.hpp"
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/base/wichmann_hill.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/energy/phi_buffer.hpp"
+#include "emax/energy/phi_operator.hpp"
+#include "emax/energy/switching_signal.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/identify/wlsp.hpp"
+#include "emax/model/modal_model.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
+#include "emax/uncertainty/monte_carlo.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "emax/base/status.hpp"
 #include "emax/board/ram_store.hpp"
-#include "emax/status.hpp"
 
 #include "hal/board_conformance.hpp"
 

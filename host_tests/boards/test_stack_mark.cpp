@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include "emax/base/status.hpp"
 #include "emax/board/null_watchdog.hpp"
 #include "emax/board/stack_mark.hpp"
-#include "emax/status.hpp"
 
 namespace {
 

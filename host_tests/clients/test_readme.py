@@ -17,7 +17,7 @@ from instruments import HostProgram
 
 PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
 README = (PROJECT / "README.md").read_text()
-SHOWN = PROJECT / "firmware/boards/host/pictures"
+SHOWN = PROJECT / "firmware/desk/pictures/readme"
 ADDRESS = "TCPIP::127.0.0.1::5025::SOCKET"
 
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "emax/app/points_reader.hpp"
-#include "emax/frequency_response.hpp"
+#include "emax/app/points/points_reader.hpp"
+#include "emax/identify/frequency_response.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/sim/sim_bench.hpp"
-#include "emax/status.hpp"
 
 namespace emax_test {
 

@@ -15,7 +15,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "emax/app/record_store.hpp"
+#include "emax/app/store/record_store.hpp"
 
 #include "file_store.hpp"
 #include "hal/board_conformance.hpp"

@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
+#include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/sim/sim_bench.hpp"
-#include "emax/status.hpp"
 
 #include "hal/bench_response.hpp"
 #include "hal/bench_run.hpp"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/sim/sim_bench.hpp"
-#include "emax/status.hpp"
 
 #include "hal/bench_run.hpp"
 

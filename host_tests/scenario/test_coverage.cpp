@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 
-#include "emax/app/sweep.hpp"
-#include "emax/frequency_response.hpp"
+#include "emax/app/measure/sweep.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/identify/wlsp.hpp"
 #include "emax/sim/sim_bench.hpp"
-#include "emax/wlsp.hpp"
 
 namespace {
 

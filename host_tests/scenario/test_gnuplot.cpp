@@ -10,7 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "gnuplot.hpp"
+#include "desk/pictures/gnuplot.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
-#include "console.hpp"
-#include "rounding.hpp"
+#include "desk/cli/console.hpp"
+#include "desk/files/rounding.hpp"
 #include "support/string_sink.hpp"
 
 namespace {

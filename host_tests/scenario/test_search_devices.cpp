@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "emax/energy_bound.hpp"
-#include "emax/energy_search.hpp"
+#include "emax/bound/energy_bound.hpp"
+#include "emax/energy/energy_search.hpp"
 
 #include "support/sign_pattern.hpp"
 

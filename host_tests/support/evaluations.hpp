@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "emax/app/evaluation.hpp"
+#include "emax/app/evaluate/evaluation.hpp"
 
 #include "support/paper_device.hpp"
 

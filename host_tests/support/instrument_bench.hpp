@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "emax/app/in_place.hpp"
-#include "emax/app/instrument.hpp"
-#include "emax/app/saved_state.hpp"
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/instrument/instrument.hpp"
+#include "emax/app/store/saved_state.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "support/manual_clock.hpp"

@@ -2,7 +2,7 @@
 // outside this code.
 #pragma once
 
-#include "emax/modal_model.hpp"
+#include "emax/model/modal_model.hpp"
 
 namespace emax::test {
 

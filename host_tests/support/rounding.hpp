@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "emax/modal_model.hpp"
+#include "emax/model/modal_model.hpp"
 
 namespace emax::test {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "emax/signs.hpp"
+#include "emax/base/signs.hpp"
 
 namespace emax::test {
 

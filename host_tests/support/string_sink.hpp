@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/text_writer.hpp"
 
 namespace emax::test {
 

@@ -9,7 +9,7 @@
 #include "emax/app/scpi/command.hpp"
 #include "emax/app/scpi/session.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::test {
 

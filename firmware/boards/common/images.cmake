@@ -24,9 +24,10 @@ function(emax_add_board)
   # Time goes by in the simulated bench and in the loops of algo; everything else had better be small.
   target_compile_options(emax_app PRIVATE -Os)
   target_compile_options(emax_board PRIVATE -Os)
-  set(seldom absolute_error butterworth decimal frequency_response monte_carlo response_scan trend wlsp)
-  list(TRANSFORM seldom REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/algo/src/\\1.cpp")
-  set_source_files_properties(${seldom} TARGET_DIRECTORY emax_algo PROPERTIES COMPILE_OPTIONS -Os)
+  foreach(library IN ITEMS emax_base emax_algo)
+    get_target_property(seldom ${library} EMAX_SELDOM)
+    set_source_files_properties(${seldom} TARGET_DIRECTORY ${library} PROPERTIES COMPILE_OPTIONS -Os)
+  endforeach()
 
   add_library(emax_board_test STATIC
     ${common}/semihosting.cpp

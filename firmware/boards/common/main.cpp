@@ -1,8 +1,8 @@
 // The product: the instrument behind the console of a board.
 #include <cstdint>
 
-#include "emax/app/in_place.hpp"
-#include "emax/app/instrument.hpp"
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/instrument/instrument.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/stack_mark.hpp"
 #include "emax/board/startup.hpp"

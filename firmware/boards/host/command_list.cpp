@@ -1,7 +1,7 @@
 // The table of all SCPI commands for people who read.
 #include "command_list.hpp"
 
-#include "emax/app/instrument.hpp"
+#include "emax/app/instrument/instrument.hpp"
 
 namespace emax::host {
 

@@ -1,7 +1,7 @@
 // The table of all SCPI commands for people who read.
 #pragma once
 
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/text_writer.hpp"
 
 namespace emax::host {
 

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "console.hpp"
+#include "desk/cli/console.hpp"
 
 namespace emax::host {
 

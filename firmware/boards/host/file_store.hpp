@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 #include "emax/hal/store.hpp"
-#include "emax/span.hpp"
-#include "emax/status.hpp"
 
-#include "problem.hpp"
+#include "desk/cli/problem.hpp"
 
 namespace emax::host {
 

@@ -8,17 +8,17 @@
 #include <unistd.h>
 #include <vector>
 
-#include "emax/app/version.hpp"
+#include "emax/app/base/version.hpp"
 
-#include "certify_command.hpp"
-#include "compare_command.hpp"
-#include "console.hpp"
-#include "nearest.hpp"
-#include "options.hpp"
-#include "problem.hpp"
-#include "report_command.hpp"
+#include "desk/certify/certify_command.hpp"
+#include "desk/cli/console.hpp"
+#include "desk/cli/nearest.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/problem.hpp"
+#include "desk/cli/stop_request.hpp"
+#include "desk/compare/compare_command.hpp"
+#include "desk/report/report_command.hpp"
 #include "scpi_command.hpp"
-#include "stop_request.hpp"
 
 namespace {
 

@@ -8,18 +8,18 @@
 #include <memory>
 #include <new>
 
-#include "emax/app/in_place.hpp"
-#include "emax/app/instrument.hpp"
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/instrument/instrument.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "command_list.hpp"
-#include "console.hpp"
 #include "console_port.hpp"
+#include "desk/cli/console.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/stop_request.hpp"
 #include "file_store.hpp"
-#include "options.hpp"
 #include "scpi_options.hpp"
 #include "stdio_stream.hpp"
-#include "stop_request.hpp"
 #include "system_clock.hpp"
 #include "tcp_stream.hpp"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
-#include "problem.hpp"
+#include "desk/cli/problem.hpp"
 
 namespace emax::host {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "emax/decimal.hpp"
+#include "emax/base/decimal.hpp"
 
-#include "console.hpp"
-#include "nearest.hpp"
-#include "option_table.hpp"
+#include "desk/cli/console.hpp"
+#include "desk/cli/nearest.hpp"
+#include "desk/cli/option_table.hpp"
 
 namespace emax::host {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
-#include "options.hpp"
-#include "problem.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/problem.hpp"
 
 namespace emax::host {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 #include "console_port.hpp"
 

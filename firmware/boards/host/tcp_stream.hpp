@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 #include "console_port.hpp"
-#include "problem.hpp"
+#include "desk/cli/problem.hpp"
 
 namespace emax::host {
 

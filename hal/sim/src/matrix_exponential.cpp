@@ -1,7 +1,7 @@
 // Scaling and squaring with a Taylor series.
 #include "emax/sim/matrix_exponential.hpp"
 
-#include "emax/elementary.hpp"
+#include "emax/base/elementary.hpp"
 
 namespace emax::sim {
 namespace {

@@ -1,8 +1,8 @@
 // xoshiro256++, counted bits with a triangular fraction, and Box and Muller.
 #include "emax/sim/noise.hpp"
 
-#include "emax/elementary.hpp"
-#include "emax/units.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::sim {
 namespace {

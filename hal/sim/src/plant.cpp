@@ -1,8 +1,8 @@
 // Assembles the state space of the shaker and the device and discretises it.
 #include "emax/sim/plant.hpp"
 
-#include "emax/elementary.hpp"
-#include "emax/units.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::sim {
 namespace {

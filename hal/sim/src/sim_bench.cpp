@@ -1,8 +1,8 @@
 // The way of a drive word through the bench, frame by frame.
 #include "emax/sim/sim_bench.hpp"
 
-#include "emax/elementary.hpp"
-#include "emax/units.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "emax/app/scpi/pattern.hpp"
-#include "emax/decimal.hpp"
+#include "emax/base/decimal.hpp"
 
 #include "characters.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "emax/app/scpi/error_code.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

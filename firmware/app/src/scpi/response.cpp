@@ -3,8 +3,8 @@
 
 #include "emax/app/scpi/error_code.hpp"
 #include "emax/app/scpi/pattern.hpp"
-#include "emax/decimal.hpp"
-#include "emax/elementary.hpp"
+#include "emax/base/decimal.hpp"
+#include "emax/base/elementary.hpp"
 
 namespace emax::app::scpi {
 namespace {

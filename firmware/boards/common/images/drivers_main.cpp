@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/text_writer.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/console_rings.hpp"
 #include "emax/board/semihosting.hpp"
 #include "emax/board/startup.hpp"
 #include "emax/board/store_format.hpp"
-#include "emax/span.hpp"
-#include "emax/status.hpp"
 
 #include "command_line.hpp"
 #include "test_image.hpp"

@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/registers.hpp"
 #include "emax/board/semihosting.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/span.hpp"
-#include "emax/status.hpp"
 
 #include "command_line.hpp"
 #include "test_image.hpp"

@@ -1,11 +1,11 @@
 // Test image: the numeric self test on the target, with the check that failed.
 #include <cstdint>
 
-#include "emax/app/in_place.hpp"
-#include "emax/app/self_test.hpp"
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/instrument/self_test.hpp"
+#include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
-#include "emax/status.hpp"
 
 #include "test_image.hpp"
 

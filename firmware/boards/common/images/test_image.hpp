@@ -1,9 +1,9 @@
 // What all test images share: text on the console without loss, and the way out.
 #pragma once
 
-#include "emax/app/text_writer.hpp"
+#include "emax/app/base/text_writer.hpp"
+#include "emax/base/span.hpp"
 #include "emax/hal/byte_stream.hpp"
-#include "emax/span.hpp"
 
 namespace emax::board {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/span.hpp"
-#include "emax/status.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 
 namespace emax::hal {
 

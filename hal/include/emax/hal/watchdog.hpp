@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "emax/status.hpp"
+#include "emax/base/status.hpp"
 
 namespace emax::hal {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "emax/base/status.hpp"
 #include "emax/sim/matrix_exponential.hpp"
-#include "emax/status.hpp"
 
 namespace emax::sim {
 

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/elementary.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/sim/noise.hpp"
 #include "emax/sim/plant.hpp"
-#include "emax/span.hpp"
-#include "emax/status.hpp"
 
 namespace emax::sim {
 

@@ -6,7 +6,7 @@
 
 #include "emax/app/scpi/call.hpp"
 #include "emax/app/scpi/pattern.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

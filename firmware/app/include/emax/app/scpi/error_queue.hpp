@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "emax/app/scpi/error_code.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

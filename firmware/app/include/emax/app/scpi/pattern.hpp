@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

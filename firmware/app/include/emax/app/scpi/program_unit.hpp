@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "emax/app/scpi/error_code.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

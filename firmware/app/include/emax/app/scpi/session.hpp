@@ -12,7 +12,7 @@
 #include "emax/app/scpi/program_unit.hpp"
 #include "emax/app/scpi/response.hpp"
 #include "emax/app/scpi/status_model.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

@@ -6,7 +6,7 @@
 
 #include "emax/app/scpi/error_code.hpp"
 #include "emax/app/scpi/error_queue.hpp"
-#include "emax/span.hpp"
+#include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emax/base/span.hpp"
 #include "emax/board/byte_ring.hpp"
-#include "emax/span.hpp"
 
 namespace emax::board {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "emax/base/span.hpp"
 #include "emax/hal/store.hpp"
-#include "emax/span.hpp"
 
 namespace emax::board {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "emax/app/record_store.hpp"
-#include "emax/app/saved_state.hpp"
+#include "emax/app/store/record_store.hpp"
+#include "emax/app/store/saved_state.hpp"
 #include "emax/hal/store.hpp"
 
 namespace emax::board {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emax/base/span.hpp"
 #include "emax/board/console_rings.hpp"
 #include "emax/hal/byte_stream.hpp"
-#include "emax/span.hpp"
 
 namespace emax::board {
 

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 
+#include "emax/base/status.hpp"
 #include "emax/board/cmsdk_clock.hpp"
 #include "emax/board/cmsdk_uart.hpp"
 #include "emax/board/cmsdk_watchdog.hpp"
 #include "emax/board/ram_store.hpp"
 #include "emax/sim/sim_bench.hpp"
-#include "emax/status.hpp"
 
 namespace emax::board {
 

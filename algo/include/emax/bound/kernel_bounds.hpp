@@ -1,0 +1,98 @@
+// Proven upper bounds of what the gradient of the energy can do anywhere in [0, T].
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
+#include "emax/model/modal_model.hpp"
+
+namespace emax {
+
+/// The number of points beyond which no mesh goes.
+inline constexpr std::size_t kMaxMesh = std::size_t{1} << 15;
+
+/// @returns The number of intervals of a mesh on [0, T] that resolves the model's fastest mode to
+/// 1/40 of its time constant; kMaxMesh + 1 if that takes too many.
+std::size_t mesh_intervals(const ModalModel& model, double duration_s) noexcept;
+
+/// The number of doubles that `KernelBounds` needs for such a mesh.
+constexpr std::size_t kernel_bounds_numbers(std::size_t intervals) noexcept {
+  return (4 * kMaxModes + 5) * (intervals + 1);
+}
+
+/// Bounds over s of the kernel phi(t, s) of paper equation (5) and its derivatives by t:
+///
+///     m_n(t) = integral from 0 to T of |d^n phi(t, s) / dt^n| ds, n = 0, 1, 2.
+///
+/// So (Phi x)(t) and its first two derivatives stay within a m_n(t) for every signal |x| <= a. On a
+/// mesh in s the integral of |f| is at most that of its linear interpolation plus 1/8 of the
+/// squared step times the integral of |f''|, and the same from mesh point to mesh point in t; the
+/// derivatives of order n + 2 are bounded by norms of k in closed form. Nothing is estimated but
+/// rounding, for which a relative 1e-9 is added.
+///
+/// Only for the integral-square error and an impulse response that starts at zero (filters of
+/// order 2 and more).
+class KernelBounds {
+ public:
+  /// Prepares the mesh. Model and memory must stay until all is read.
+  ///
+  /// @param[in] numbers At least `kernel_bounds_numbers(mesh_intervals(...))`.
+  /// @returns
+  /// * kOk: `step()` until `done()`.
+  /// * kInvalidArgument: The duration, or the criterion is the energy difference.
+  /// * kInvalidOrder: A filter of order 1.
+  /// * kTooManyCells: The mesh would be too large: shorten T.
+  /// * kBufferTooSmall: `numbers` is.
+  Status start(const ModalModel& model, double duration_s, Span<double> numbers) noexcept;
+
+  /// Works on the next few mesh points. About 10 ns for each pair of mesh points and mode.
+  void step() noexcept;
+  bool done() const noexcept { return next_row_ > intervals_; }
+  double progress() const noexcept {
+    return static_cast<double>(next_row_) / static_cast<double>(intervals_ + 1);
+  }
+
+  /// @returns An upper bound of m_`order` over [`from_s`, `to_s`], which is cut to [0, T].
+  double bound(int order, double from_s, double to_s) const noexcept;
+
+  /// @returns The norm of k' over [0, infinity).
+  double slope_norm() const noexcept { return norms_[1]; }
+
+ private:
+  void fill_tables(Span<double> numbers) noexcept;
+  void fill_norms() noexcept;
+  void fill_row(std::size_t row) noexcept;
+
+  static constexpr std::size_t kDerivatives = 5;
+
+  const ModalModel* model_ = nullptr;
+  double duration_s_ = 0.0;
+  double step_s_ = 0.0;
+  std::size_t intervals_ = 0;
+  std::size_t stride_ = 1;  // Mesh points in s for one in t.
+  std::size_t next_row_ = 0;
+  double norms_[kDerivatives] = {};              // Of the derivatives of k.
+  double starts_[kDerivatives] = {};             // |k^(n)(0)|.
+  double remainders_[3] = {};                    // Of each m_n, from one mesh point to the next.
+  Span<double> exponential_re_[kMaxModes] = {};  // e^(p d), by the distance d.
+  Span<double> exponential_im_[kMaxModes] = {};
+  Span<double> held_re_[kMaxModes] = {};  // U_p(T - s), by s.
+  Span<double> held_im_[kMaxModes] = {};
+  Span<double> impulse_;            // k.
+  Span<double> impulse_slope_;      // k'.
+  Span<double> integrals_[3] = {};  // Over s at each mesh point in t.
+};
+
+static_assert(std::is_trivially_copyable_v<KernelBounds>);
+
+/// U_p(tau) = integral from 0 to tau of e^(p w) k(w) dw for the pole of each mode: with it
+/// phi(t, s) = Re sum r_p e^(p (s - t)) U_p(T - s) for t <= s.
+void held_responses(const ModalModel& model, double tau_s, Complex* held) noexcept;
+
+/// The energy up to T of the response to a unit pulse of length `width_s` that starts `left_s`
+/// before T; `width_s` <= `left_s`.
+double pulse_energy(const ModalModel& model, double left_s, double width_s) noexcept;
+
+}  // namespace emax

@@ -1,0 +1,202 @@
+// Weighted least squares for sensitivity, natural frequency and damping from measured points, with
+// covariances.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/base/complex.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
+#include "emax/base/wichmann_hill.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/model/accelerometer.hpp"
+
+namespace emax {
+
+/// Three parameters in the order S in V/(m/s^2), f0 in Hz, beta; everywhere below, rows and columns
+/// go in this order.
+inline constexpr std::size_t kWlspParameters = 3;
+
+struct WlspFit {
+  Status status = Status::kTooFewPoints;  ///< What `Wlsp::fit()` answered.
+  std::uint32_t dof = 0;                  ///< Degrees of freedom, 2 points - 3.
+  Accelerometer model;                    ///< The estimates.
+  double u_sensitivity =
+      0.0;  ///< Standard uncertainties: the roots of the diagonal of `covariance`.
+  double u_natural_frequency_hz = 0.0;
+  double u_damping = 0.0;
+  double covariance[kWlspParameters][kWlspParameters] = {};
+  double mu[3] = {};  ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
+  double chi2 = 0.0;  ///< Sum of the squares of the normalised residuals and of `common_effect`.
+  double common_effect = 0.0;  ///< The common effect found, in units of its standard uncertainty.
+  double birge_ratio = 0.0;    ///< sqrt(chi2/dof): 1 where the model and the uncertainties hold.
+};
+
+/// Fits 1/K(jw) = mu1 + 2jw mu2 - w^2 mu3 to the points (Link, Taubner, Wabinski, Bruns, Elster,
+/// Measurement 40 (2007) 928; the paper's Table 2): S = 1/mu1, w0 = sqrt(mu1/mu3), beta =
+/// mu2/sqrt(mu1 mu3).
+///
+/// Each point's two equations are whitened by the Cholesky factor of its 2x2 covariance; w is
+/// scaled by its maximum; the system is reduced by Givens rotations, one row at a time, in fixed
+/// memory. The covariance of the estimates is that of the stated uncertainties (it is not
+/// multiplied by the Birge ratio), carried from mu by its Jacobian.
+///
+/// Where the response has a common part, its covariance is C + c c^T over all points together, with
+/// c_i = -u_i y_i. The fit takes it as one more unknown z, y = M mu + c z, that has an observation
+/// of its own, z = 0 with uncertainty 1: one more column and one more row in the rotations. Solving
+/// for mu and z is the same as weighting with (C + c c^T)^-1 by Woodbury's formula, and needs no
+/// matrix over the points. z comes first, so what is below it in the triangle belongs to mu alone.
+/// y_i is 1/K as modelled by a first fit without the common part, not as measured: a c from
+/// scattered values pulls the estimates to one side (Peelle's puzzle). With the same u everywhere c
+/// is among the columns of M: estimates and chi-square stay what they were, u(S)^2 grows by (u
+/// S)^2, and nothing else changes.
+///
+/// The object keeps a copy of the points it has fitted and their factors: 4.8 KiB. A fit takes
+/// about 300 multiplications per point, twice that and a half with a common part.
+class Wlsp {
+ public:
+  /// Fits with the points' covariances by formula (`inverse_cholesky()`).
+  ///
+  /// @returns The same as `result().status`:
+  /// * kOk
+  /// * kTooFewPoints: Fewer than 3 points.
+  /// * kNotIdentifiable: The equations are dependent to within rounding (frequencies that hardly
+  /// differ), or numbers so
+  ///   large or small that the fit overflows.
+  /// * kNotPhysical: mu1 and mu3 differ in sign or one is zero, or the damping is zero or less.
+  /// * kInvertedPolarity: mu1 and mu3 are both negative and the damping is above zero: -K fits. The
+  /// sensitivity in the
+  ///   result is negative.
+  /// * kOverdamped: The damping is 1 or more.
+  ///
+  /// The result of an earlier fit is replaced in every case. kInvertedPolarity, kOverdamped and a
+  /// kNotPhysical with mu1 and mu3 of the same sign leave all numbers filled in, other kNotPhysical
+  /// `mu`, `chi2`, `dof` and `birge_ratio`; the rest leave zeros.
+  Status fit(const FrequencyResponse& response) noexcept;
+
+  /// Fits with the given covariances of 1/K, one per point, for instance from
+  /// `inverse_covariance_by_draws()`.
+  ///
+  /// @returns As above, and kInvalidArgument if there are not as many covariances as points or one
+  /// is not positive definite.
+  Status fit(const FrequencyResponse& response, Span<const ComplexCovariance> covariances) noexcept;
+
+  /// @returns That of the last fit; all zero before the first.
+  const WlspFit& result() const noexcept { return fit_; }
+  /// @returns The points of the last fit; none if there were too few.
+  const FrequencyResponse& response() const noexcept { return response_; }
+
+  /// @param[in] index Of a point, below `response().size()`.
+  /// @returns 1/K measured minus 1/K fitted at that point, whitened: L^-1 times the residual, so
+  /// that both parts are near 1 in size where the stated uncertainties hold. The common effect
+  /// found is taken out first. The sum of their squares over all points, plus the square of
+  /// `common_effect`, is chi2.
+  Complex normalised_residual(std::size_t index) const noexcept;
+
+  /// @returns The chi-square of any other model in the same measure: against the same points, with
+  /// the same factors and the same common part.
+  double chi_square_of(const Accelerometer& model) const noexcept;
+
+ private:
+  friend class WlspDraws;
+
+  struct Columns {
+    Complex column[3];
+  };
+
+  // All zero, so that the object may sit in .bss.
+  static constexpr WlspFit no_fit() noexcept {
+    WlspFit fit;
+    fit.status = Status::kOk;
+    return fit;
+  }
+  Status load(const FrequencyResponse& response) noexcept;
+  Status solve() noexcept;
+  Status reject(Status status) noexcept;
+  bool triangularise(double (&rhs)[3]) noexcept;
+  bool triangularise_with_common(double (&rhs)[3]) noexcept;
+  Complex whitened_common(std::size_t index) const noexcept;
+  double common_effect_of(const double (&scaled)[3]) const noexcept;
+  bool fill_estimates() noexcept;
+  Complex whiten(std::size_t index, Complex value) const noexcept;
+  Columns whitened_columns(std::size_t index) const noexcept;
+  Complex whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept;
+  double chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept;
+
+  FrequencyResponse response_;
+  ComplexCholesky factors_[kMaxPoints] = {};
+  double max_frequency_hz_ = 0.0;
+  double r_[3][3] = {};    // Upper triangular factor of the whitened, scaled equations.
+  double scaled_[3] = {};  // mu in units of the scaled frequency: mu1, mu2 w_max, mu3 w_max^2.
+  double first_scaled_[3] = {};  // The same of the fit without the common part.
+  double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
+  bool has_common_ = false;
+  WlspFit fit_ = no_fit();
+};
+
+static_assert(std::is_trivially_copyable_v<Wlsp>);
+
+struct WlspDrawsResult {
+  std::uint32_t draws = 0;      ///< Draws that went into the numbers below.
+  std::uint32_t discarded = 0;  ///< Draws with an amplitude, mu1 or mu3 of zero or less: no device.
+  double mean[kWlspParameters] = {};
+  double covariance[kWlspParameters][kWlspParameters] = {};
+};
+
+/// The covariance of the estimates by Monte Carlo draws, in slices of any size, so that a console
+/// is never blocked.
+///
+/// Each draw takes amplitude and phase of every point from normal distributions of their standard
+/// uncertainties about the measured values and fits again with the weights kept (two uniform
+/// numbers per point, in the order of the points; amplitude from the first normal number). Where
+/// the response has a common part, two more numbers before those of the points make one normal
+/// number that moves all amplitudes together. With the weights kept the fit is linear in 1/K: each
+/// draw only costs a new right-hand side. The triangular factor of `Wlsp` is used as it is.
+///
+/// The estimates stay those of `Wlsp::fit()`. The mean of the draws is shown to be compared with
+/// them, never to replace them: it carries the bias of the draws on top of the measurement's.
+///
+/// 152 bytes; keeps no reference to the fit. Sums are taken about the fit's estimates, so
+/// nothing cancels.
+class WlspDraws {
+ public:
+  /// Starts over.
+  ///
+  /// @param[in] fit       A fit that answered kOk.
+  /// @param[in] draws     2 or more.
+  /// @param[in] generator Seeded, and jumped ahead by the caller to where these draws belong.
+  /// @returns
+  /// * kOk: Ready for `step()`.
+  /// * kInvalidArgument: Fewer than 2 draws. Nothing has changed.
+  /// * Else the status of the fit, if that is not kOk. Nothing has changed.
+  Status start(const Wlsp& fit, std::uint32_t draws, const WichmannHill& generator) noexcept;
+
+  /// Makes the next `count` draws, or as many as are left.
+  ///
+  /// @param[in] fit The same fit that `start()` was given, unchanged.
+  void step(const Wlsp& fit, std::uint32_t count) noexcept;
+
+  bool done() const noexcept { return made_ == wanted_; }
+  std::uint32_t made() const noexcept { return made_; }
+
+  /// @returns Mean and covariance of the draws made so far; the covariance divides by draws - 1 and
+  /// is zero below 2.
+  WlspDrawsResult result() const noexcept;
+
+ private:
+  bool draw(const Wlsp& fit, double (&deviation)[3]) noexcept;
+
+  WichmannHill generator_;
+  std::uint32_t wanted_ = 0;
+  std::uint32_t made_ = 0;
+  std::uint32_t discarded_ = 0;
+  double estimate_[3] = {};
+  double sum_[3] = {};
+  double products_[3][3] = {};
+};
+
+static_assert(std::is_trivially_copyable_v<WlspDraws>);
+
+}  // namespace emax

@@ -1,0 +1,137 @@
+// The error system, sensor minus filter, as a sum of modes with the Gramian that turns states into
+// energies.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
+#include "emax/model/accelerometer.hpp"
+#include "emax/model/butterworth.hpp"
+#include "emax/model/mode.hpp"
+
+namespace emax {
+
+inline constexpr std::size_t kMaxModes = 1 + kMaxFilterModes;
+
+/// Which energy is made as large as possible.
+enum class Criterion : std::uint8_t {
+  kIntegralSquareError,  ///< Of y = ya - yf, paper equations (8), (14), (15), (20): never negative.
+  kEnergyDifference,     ///< E(ya) - E(yf), paper equations (5) and (13): may be negative.
+};
+
+/// A value of the impulse response and when it occurs.
+struct Peak {
+  double value = 0.0;  ///< With its sign.
+  double time_s = 0.0;
+};
+
+struct SettlingTime {
+  double time_s = 0.0;
+  bool found =
+      false;  ///< False if the response was still above the limit at the end of the search.
+};
+
+/// k(t) = ka(t) - kf(t) by partial fractions, paper equation (14), and the two Gramians of its
+/// modes.
+///
+/// Mode 0 is the sensor, the others are the filter; the filter's residues carry the minus sign.
+/// 2.3 KiB. After `set()`, a new sensor costs one row of the Gramians (`set_device()`).
+class ModalModel {
+ public:
+  /// Takes over sensor, filter and criterion.
+  ///
+  /// @returns
+  /// * kOk: Ready.
+  /// * kOverdamped, kInvalidOrder, kInvalidArgument: As `validate()` of sensor and filter; nothing
+  ///   has changed.
+  Status set(const Accelerometer& device, const Butterworth& filter, Criterion criterion) noexcept;
+
+  /// Exchanges the sensor and keeps filter and criterion. `set()` comes first.
+  ///
+  /// @returns As `validate()`; nothing has changed unless it is kOk.
+  Status set_device(const Accelerometer& device) noexcept;
+
+  /// Multiplies the filter's gain: for a filter that follows the sensor's sensitivity.
+  ///
+  /// @param[in] gain In V/(m/s^2), finite and not negative, else kInvalidArgument and nothing has
+  ///   changed.
+  Status set_gain(double gain) noexcept;
+
+  const Accelerometer& device() const noexcept { return device_; }
+  const Butterworth& filter() const noexcept { return filter_; }
+  Criterion criterion() const noexcept { return criterion_; }
+  Span<const Mode> modes() const noexcept { return Span<const Mode>(modes_, count_); }
+
+  /// c/(p_i + p_j) and c/(p_i + conj p_j), c being 1, or for the energy difference +1 for two
+  /// sensor modes, -1 for two filter modes and 0 between them.
+  Complex gramian(std::size_t i, std::size_t j) const noexcept {
+    return i <= j ? gramian_[pair(i, j)] : gramian_[pair(j, i)];
+  }
+  Complex conjugate_gramian(std::size_t i, std::size_t j) const noexcept {
+    return i < j ? conjugate_gramian_[pair(i, j)] : conj(conjugate_gramian_[pair(j, i)]);
+  }
+
+  /// 1/2 sum_j [output_j G_ij + conj(output_j) H_ij], G and H being the two Gramians: what the
+  /// outputs of the modes at T still hold, seen from mode i.
+  Complex gramian_row(std::size_t i, const Complex* output) const noexcept;
+  /// Re sum_i output_i gramian_row(i, output). By symmetry each two modes are taken once.
+  double gramian_form(const Complex* output) const noexcept;
+
+  /// 1/p_i.
+  Complex inverse_pole(std::size_t i) const noexcept { return inverse_pole_[i]; }
+  /// The autocorrelation of k at a distance t is Re sum_i correlation(i) e^(p_i t). Computed in
+  /// each call, by two products per mode.
+  Complex correlation(std::size_t i) const noexcept;
+  /// What the state of mode i at a switch is multiplied by in the energy; see `energy()`.
+  Complex switch_weight(std::size_t i) const noexcept { return switch_weight_[i]; }
+  /// The square of the settled output (or difference of the two squares) for a constant unit input.
+  double static_power() const noexcept { return static_power_; }
+
+  /// @returns k(t), ka(t) and kf(t) in V/(m/s), paper equation (14); 0 for t < 0.
+  double impulse_response(double time_s) const noexcept;
+  double device_impulse_response(double time_s) const noexcept;
+  double filter_impulse_response(double time_s) const noexcept;
+
+  /// @returns The integral of k from 0 to t, in V/(m/s^2).
+  double step_response(double time_s) const noexcept;
+
+  /// @returns The value of k farthest from zero, to the last digits, and its time.
+  /// Samples k at 64 points per period of its fastest mode, then bisects on its derivative.
+  Peak peak() const noexcept;
+
+  /// @returns The last time at which |k| leaves the band of ±`fraction` of its peak. At most 2^20
+  ///   samples are looked at; beyond that `found` is false and the time is how far the search came.
+  SettlingTime settling_time(double fraction) const noexcept;
+
+ private:
+  static constexpr std::size_t kPairs = kMaxModes * (kMaxModes + 1) / 2;
+  /// The place of i <= j among the pairs.
+  static constexpr std::size_t pair(std::size_t i, std::size_t j) noexcept {
+    return j * (j + 1) / 2 + i;
+  }
+  void fill_gramians(std::size_t first_row_count) noexcept;
+  void fill_sums_over_filter() noexcept;
+  void fill_switch_weights() noexcept;
+
+  Mode modes_[kMaxModes] = {};
+  // Of pairs i <= j: the first is symmetric, the second Hermitian.
+  Complex gramian_[kPairs] = {};
+  Complex conjugate_gramian_[kPairs] = {};
+  Complex inverse_pole_[kMaxModes] = {};
+  Complex settled_[kMaxModes] = {};  // r / p
+  Complex switch_weight_[kMaxModes] = {};
+  // The part of the sums over modes that a new sensor does not change.
+  Complex filter_settled_[kMaxModes] = {};
+  double static_power_ = 0.0;
+  Accelerometer device_ = {};
+  Butterworth filter_ = {};
+  std::size_t count_ = 0;
+  Criterion criterion_ = {};
+};
+
+static_assert(std::is_trivially_copyable_v<ModalModel>);
+
+}  // namespace emax

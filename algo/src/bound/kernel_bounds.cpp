@@ -1,0 +1,301 @@
+// Bounds of the kernel phi and its derivatives on a mesh, and the energy of a pulse.
+#include "emax/bound/kernel_bounds.hpp"
+
+#include "emax/base/complex_exp.hpp"
+#include "emax/base/elementary.hpp"
+
+namespace emax {
+namespace {
+
+constexpr double kMeshResolution = 40.0;
+/// Above this many intervals every second point in t has to do.
+constexpr std::size_t kFineIntervals = 4000;
+constexpr double kRounding = 1.0 + 1e-9;
+constexpr std::size_t kRowsPerStep = 16;
+
+double fastest_rate(const ModalModel& model) noexcept {
+  double fastest = 0.0;
+  for (const Mode& mode : model.modes()) {
+    const double rate = norm(mode.pole);
+    fastest = rate > fastest ? rate : fastest;
+  }
+  return sqrt(fastest);
+}
+
+Complex power_of(Complex pole, std::size_t exponent) noexcept {
+  Complex power{1.0, 0.0};
+  for (std::size_t i = 0; i < exponent; ++i) {
+    power = power * pole;
+  }
+  return power;
+}
+
+double maximum(double a, double b) noexcept { return a > b ? a : b; }
+
+/// The energy of Re sum c_i e^(p_i u) for u from 0 to `length_s`.
+double tail_energy(const ModalModel& model, const Complex* c, double length_s) noexcept {
+  const Span<const Mode> modes = model.modes();
+  Complex late[kMaxModes];
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    late[i] = exp(length_s * modes[i].pole) * c[i];
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    for (std::size_t j = 0; j < modes.size(); ++j) {
+      sum += real_of_product(model.gramian(i, j), late[i] * late[j] - c[i] * c[j]);
+      sum += real_of_product(model.conjugate_gramian(i, j),
+                             late[i] * conj(late[j]) - c[i] * conj(c[j]));
+    }
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+std::size_t mesh_intervals(const ModalModel& model, double duration_s) noexcept {
+  const double wanted = duration_s * fastest_rate(model) * kMeshResolution;
+  if (!(wanted < static_cast<double>(kMaxMesh))) {
+    return kMaxMesh + 1;
+  }
+  // Even, so that every second point ends on T.
+  return 2 * (static_cast<std::size_t>(0.5 * wanted) + 1);
+}
+
+void held_responses(const ModalModel& model, double tau_s, Complex* held) noexcept {
+  const Span<const Mode> modes = model.modes();
+  Complex late[kMaxModes];
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    late[i] = exp(tau_s * modes[i].pole);
+  }
+  const Complex one{1.0, 0.0};
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    Complex sum;
+    for (std::size_t j = 0; j < modes.size(); ++j) {
+      sum = sum + modes[j].residue * model.gramian(i, j) * (late[i] * late[j] - one);
+      sum = sum + conj(modes[j].residue) * model.conjugate_gramian(i, j) *
+                      (late[i] * conj(late[j]) - one);
+    }
+    held[i] = 0.5 * sum;
+  }
+}
+
+double pulse_energy(const ModalModel& model, double left_s, double width_s) noexcept {
+  // Gauss-Legendre with 8 nodes on [-1, 1], for the square of the step response during the pulse.
+  constexpr double kNodes[] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
+                               0.96028985649753623};
+  constexpr double kWeights[] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
+                                 0.10122853629037626};
+  const auto pieces = static_cast<std::size_t>(2.0 * width_s * fastest_rate(model)) + 1;
+  const double half_s = 0.5 * width_s / static_cast<double>(pieces);
+  double during = 0.0;
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const double middle_s = (2.0 * static_cast<double>(piece) + 1.0) * half_s;
+    for (std::size_t n = 0; n < 4; ++n) {
+      const double before = model.step_response(middle_s - half_s * kNodes[n]);
+      const double after = model.step_response(middle_s + half_s * kNodes[n]);
+      during += half_s * kWeights[n] * (before * before + after * after);
+    }
+  }
+  const Span<const Mode> modes = model.modes();
+  Complex c[kMaxModes];
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    c[i] = width_s * (modes[i].residue * phi1(width_s * modes[i].pole));
+  }
+  return during + tail_energy(model, c, left_s - width_s);
+}
+
+Status KernelBounds::start(const ModalModel& model, double duration_s,
+                           Span<double> numbers) noexcept {
+  if (!(duration_s > 0.0) || model.criterion() != Criterion::kIntegralSquareError) {
+    return Status::kInvalidArgument;
+  }
+  if (model.filter().order < 2) {
+    return Status::kInvalidOrder;
+  }
+  const std::size_t intervals = mesh_intervals(model, duration_s);
+  if (intervals > kMaxMesh) {
+    return Status::kTooManyCells;
+  }
+  if (numbers.size() < kernel_bounds_numbers(intervals)) {
+    return Status::kBufferTooSmall;
+  }
+  model_ = &model;
+  duration_s_ = duration_s;
+  intervals_ = intervals;
+  step_s_ = duration_s / static_cast<double>(intervals);
+  stride_ = intervals > kFineIntervals ? 2 : 1;
+  next_row_ = 0;
+  fill_tables(numbers);
+  fill_norms();
+  return Status::kOk;
+}
+
+void KernelBounds::fill_tables(Span<double> numbers) noexcept {
+  const std::size_t points = intervals_ + 1;
+  const auto take = [&]() {
+    const Span<double> table = numbers.first(points);
+    numbers = numbers.from(points);
+    return table;
+  };
+  const Span<const Mode> modes = model_->modes();
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    exponential_re_[i] = take();
+    exponential_im_[i] = take();
+    held_re_[i] = take();
+    held_im_[i] = take();
+  }
+  impulse_ = take();
+  impulse_slope_ = take();
+  for (Span<double>& integral : integrals_) {
+    integral = take();
+  }
+  for (std::size_t point = 0; point < points; ++point) {
+    const double time_s = static_cast<double>(point) * step_s_;
+    Complex held[kMaxModes];
+    held_responses(*model_, duration_s_ - time_s > 0.0 ? duration_s_ - time_s : 0.0, held);
+    double impulse = 0.0;
+    double slope = 0.0;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const Complex exponential = exp(time_s * modes[i].pole);
+      exponential_re_[i][point] = exponential.re;
+      exponential_im_[i][point] = exponential.im;
+      held_re_[i][point] = held[i].re;
+      held_im_[i][point] = held[i].im;
+      const Complex term = modes[i].residue * exponential;
+      impulse += term.re;
+      slope += real_of_product(modes[i].pole, term);
+    }
+    impulse_[point] = impulse;
+    impulse_slope_[point] = slope;
+  }
+}
+
+// With L_n the integral of |k^(n)| over [0, T], at most sqrt(T) times its norm, the derivatives of
+// order n + 2 that the remainders ask for are integrals of products k^(i) k^(j) with i + j = n + 2,
+// bounded by norms, and what the moving end of the integral adds.
+void KernelBounds::fill_norms() noexcept {
+  const Span<const Mode> modes = model_->modes();
+  for (std::size_t n = 0; n < kDerivatives; ++n) {
+    double start = 0.0;
+    double energy = 0.0;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const Complex c = modes[i].residue * power_of(modes[i].pole, n);
+      start += c.re;
+      for (std::size_t j = 0; j < modes.size(); ++j) {
+        const Complex d = modes[j].residue * power_of(modes[j].pole, n);
+        energy -= 0.5 * (real_of_product(c * d, model_->gramian(i, j)) +
+                         real_of_product(c * conj(d), model_->conjugate_gramian(i, j)));
+      }
+    }
+    starts_[n] = abs(start) * kRounding;
+    norms_[n] = sqrt(energy) * kRounding;
+  }
+  const double root = sqrt(duration_s_);
+  const double t_step_s = static_cast<double>(stride_) * step_s_;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double smooth = maximum(norms_[n + 2] * norms_[0], norms_[n] * norms_[2]);
+    double moving_end = n == 2 ? starts_[1] * starts_[1] : 0.0;  // A jump of the slope at s = t.
+    for (std::size_t j = 1; j <= n + 1; ++j) {
+      moving_end += 2.0 * starts_[j] * root * norms_[n + 1 - j];  // On both sides of t.
+    }
+    remainders_[n] =
+        0.125 * (t_step_s * t_step_s + step_s_ * step_s_) * (duration_s_ * smooth + moving_end);
+  }
+}
+
+void KernelBounds::step() noexcept {
+  for (std::size_t i = 0; i < kRowsPerStep && !done(); ++i) {
+    fill_row(next_row_);
+    next_row_ += stride_;
+  }
+}
+
+void KernelBounds::fill_row(std::size_t row) noexcept {
+  constexpr std::size_t kChunk = 256;
+  const Span<const Mode> modes = model_->modes();
+  double sums[3] = {};
+  double terms[3][kChunk] = {};
+  // The trapezoidal rule: an end of the range of one formula counts half.
+  const auto add = [&](std::size_t count, bool starts, bool ends) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t i = 0; i < count; ++i) {
+        sums[n] += abs(terms[n][i]);
+      }
+      sums[n] -= starts ? 0.5 * abs(terms[n][0]) : 0.0;
+      sums[n] -= ends ? 0.5 * abs(terms[n][count - 1]) : 0.0;
+    }
+  };
+  // s >= t: -+ integral of k^(n)(w + s - t) k(w).
+  for (std::size_t first = row; first <= intervals_; first += kChunk) {
+    const std::size_t left = intervals_ + 1 - first;
+    const std::size_t count = left < kChunk ? left : kChunk;
+    for (auto& order : terms) {
+      for (std::size_t i = 0; i < count; ++i) {
+        order[i] = 0.0;
+      }
+    }
+    for (std::size_t m = 0; m < modes.size(); ++m) {
+      const Complex c0 = modes[m].residue;
+      const Complex c1 = c0 * modes[m].pole;
+      const Complex c2 = c1 * modes[m].pole;
+      const double* ere = &exponential_re_[m][first - row];
+      const double* eim = &exponential_im_[m][first - row];
+      const double* ure = &held_re_[m][first];
+      const double* uim = &held_im_[m][first];
+      for (std::size_t i = 0; i < count; ++i) {
+        const double re = ere[i] * ure[i] - eim[i] * uim[i];
+        const double im = ere[i] * uim[i] + eim[i] * ure[i];
+        terms[0][i] += c0.re * re - c0.im * im;
+        terms[1][i] += c1.re * re - c1.im * im;
+        terms[2][i] += c2.re * re - c2.im * im;
+      }
+    }
+    add(count, first == row, first + count > intervals_);
+  }
+  // s <= t, by the distance t - s.
+  const double* impulse = impulse_.data();
+  const double* slope = impulse_slope_.data();
+  const std::size_t end = intervals_ - row;  // T - t.
+  for (std::size_t first = 0; first <= row; first += kChunk) {
+    const std::size_t left = row + 1 - first;
+    const std::size_t count = left < kChunk ? left : kChunk;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double late = impulse[end + first + i];
+      terms[0][i] = 0.0;
+      terms[1][i] = -impulse[end] * late;
+      terms[2][i] = slope[end] * late - impulse[end] * slope[end + first + i];
+    }
+    for (std::size_t m = 0; m < modes.size(); ++m) {
+      const Complex c0 = modes[m].residue * Complex{held_re_[m][row], held_im_[m][row]};
+      const Complex c1 = c0 * modes[m].pole;
+      const Complex c2 = c1 * modes[m].pole;
+      const double* ere = &exponential_re_[m][first];
+      const double* eim = &exponential_im_[m][first];
+      for (std::size_t i = 0; i < count; ++i) {
+        terms[0][i] += c0.re * ere[i] - c0.im * eim[i];
+        terms[1][i] += c1.re * ere[i] - c1.im * eim[i];
+        terms[2][i] += c2.re * ere[i] - c2.im * eim[i];
+      }
+    }
+    add(count, first == 0, first + count > row);
+  }
+  for (std::size_t n = 0; n < 3; ++n) {
+    integrals_[n][row] = sums[n] * step_s_;
+  }
+}
+
+double KernelBounds::bound(int order, double from_s, double to_s) const noexcept {
+  const auto n = static_cast<std::size_t>(order);
+  const double t_step_s = static_cast<double>(stride_) * step_s_;
+  const std::size_t last_row = intervals_ / stride_;
+  const double last = static_cast<double>(last_row);
+  const double low = floor(maximum(from_s, 0.0) / t_step_s - 1e-6);
+  const double high = floor(to_s / t_step_s + 1e-6) + 1.0;
+  double largest = 0.0;
+  for (double point = maximum(low, 0.0); point <= (high < last ? high : last); point += 1.0) {
+    largest = maximum(largest, integrals_[n][static_cast<std::size_t>(point) * stride_]);
+  }
+  return (largest + remainders_[n]) * kRounding;
+}
+
+}  // namespace emax

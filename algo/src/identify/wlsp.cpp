@@ -1,0 +1,434 @@
+// Weighted least squares for sensitivity, natural frequency and damping from measured points, with
+// covariances.
+#include "emax/identify/wlsp.hpp"
+
+#include "emax/base/distributions.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+
+namespace emax {
+namespace {
+
+constexpr std::size_t kMinPoints = 3;
+
+// A column whose part across the others is smaller than this share of it is dependent: rounding in
+// the rotations leaves about 1e-15.
+constexpr double kDependent = 1e-12;
+
+bool all_finite(const double (&values)[3]) noexcept {
+  return is_finite(values[0]) && is_finite(values[1]) && is_finite(values[2]);
+}
+
+bool factor(const ComplexCovariance& c, ComplexCholesky& l) noexcept {
+  l.re_re = sqrt(c.re_re);
+  l.im_re = c.re_im / l.re_re;
+  l.im_im = sqrt(c.im_im - l.im_re * l.im_re);
+  return l.re_re > 0.0 && l.im_im > 0.0 && is_finite(l.re_re) && is_finite(l.im_im);
+}
+
+// Rotates one row with its right-hand side into the triangle; the row ends as zeros.
+template <std::size_t kSize>
+void rotate_in(double (&r)[kSize][kSize], double (&rhs)[kSize], double (&row)[kSize],
+               double value) noexcept {
+  for (std::size_t k = 0; k < kSize; ++k) {
+    if (row[k] == 0.0) {
+      continue;
+    }
+    const double length = sqrt(r[k][k] * r[k][k] + row[k] * row[k]);
+    const double c = r[k][k] / length;
+    const double s = row[k] / length;
+    for (std::size_t i = k; i < kSize; ++i) {
+      const double upper = r[k][i];
+      r[k][i] = c * upper + s * row[i];
+      row[i] = c * row[i] - s * upper;
+    }
+    const double upper = rhs[k];
+    rhs[k] = c * upper + s * value;
+    value = c * value - s * upper;
+  }
+}
+
+void solve_upper(const double (&r)[3][3], double (&x)[3]) noexcept {
+  x[2] = x[2] / r[2][2];
+  x[1] = (x[1] - r[1][2] * x[2]) / r[1][1];
+  x[0] = (x[0] - r[0][1] * x[1] - r[0][2] * x[2]) / r[0][0];
+}
+
+void solve_transposed(const double (&r)[3][3], double (&x)[3]) noexcept {
+  x[0] = x[0] / r[0][0];
+  x[1] = (x[1] - r[0][1] * x[0]) / r[1][1];
+  x[2] = (x[2] - r[0][2] * x[0] - r[1][2] * x[1]) / r[2][2];
+}
+
+bool independent(const double (&r)[3][3]) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i <= k; ++i) {
+      squares += r[i][k] * r[i][k];
+    }
+    if (!is_finite(squares) || !(abs(r[k][k]) > kDependent * sqrt(squares))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Status Wlsp::fit(const FrequencyResponse& response) noexcept {
+  const Status status = load(response);
+  if (status != Status::kOk) {
+    return status;
+  }
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    factors_[i] = inverse_cholesky(response_.points()[i]);
+    if (!(factors_[i].re_re > 0.0) || !(factors_[i].im_im > 0.0)) {
+      return reject(Status::kNotIdentifiable);
+    }
+  }
+  return solve();
+}
+
+Status Wlsp::fit(const FrequencyResponse& response,
+                 Span<const ComplexCovariance> covariances) noexcept {
+  const Status status = load(response);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (covariances.size() != response_.size()) {
+    return reject(Status::kInvalidArgument);
+  }
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    if (!factor(covariances[i], factors_[i])) {
+      return reject(Status::kInvalidArgument);
+    }
+  }
+  return solve();
+}
+
+Status Wlsp::load(const FrequencyResponse& response) noexcept {
+  if (response.size() < kMinPoints) {
+    return reject(Status::kTooFewPoints);
+  }
+  response_ = response;
+  has_common_ = response.has_common();
+  max_frequency_hz_ = response_.points()[response_.size() - 1].frequency_hz;
+  fit_ = WlspFit();
+  return Status::kOk;
+}
+
+Status Wlsp::reject(Status status) noexcept {
+  if (status == Status::kTooFewPoints || status == Status::kInvalidArgument) {
+    response_.clear();
+  }
+  fit_ = WlspFit();
+  fit_.status = status;
+  return status;
+}
+
+Status Wlsp::solve() noexcept {
+  double scaled[3] = {};
+  if (!triangularise(scaled) || !independent(r_)) {
+    return reject(Status::kNotIdentifiable);
+  }
+  solve_upper(r_, scaled);
+  if (!all_finite(scaled)) {
+    return reject(Status::kNotIdentifiable);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    first_scaled_[k] = scaled[k];
+  }
+  if (has_common_) {
+    if (!triangularise_with_common(scaled) || !independent(r_)) {
+      return reject(Status::kNotIdentifiable);
+    }
+    solve_upper(r_, scaled);
+    if (!all_finite(scaled)) {
+      return reject(Status::kNotIdentifiable);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    scaled_[k] = scaled[k];
+  }
+  const double w_max = kTwoPi * max_frequency_hz_;
+  fit_.mu[0] = scaled[0];
+  fit_.mu[1] = scaled[1] / w_max;
+  fit_.mu[2] = scaled[2] / w_max / w_max;
+  fit_.dof = static_cast<std::uint32_t>(2 * response_.size() - kWlspParameters);
+  fit_.common_effect = common_effect_of(scaled_);
+  fit_.chi2 = chi_square_of_scaled(scaled_, fit_.common_effect);
+  fit_.birge_ratio = sqrt(fit_.chi2 / static_cast<double>(fit_.dof));
+  if (!all_finite(fit_.mu) || !is_finite(fit_.chi2)) {
+    return reject(Status::kNotIdentifiable);
+  }
+  if (!(scaled[0] * scaled[2] > 0.0)) {
+    fit_.status = Status::kNotPhysical;
+    return fit_.status;
+  }
+  if (!fill_estimates()) {
+    return reject(Status::kNotIdentifiable);
+  }
+  fit_.status = Status::kOk;
+  if (!(fit_.model.damping > 0.0)) {
+    fit_.status = Status::kNotPhysical;
+  } else if (scaled[0] < 0.0) {
+    fit_.status = Status::kInvertedPolarity;
+  } else if (fit_.model.damping >= 1.0) {
+    fit_.status = Status::kOverdamped;
+  }
+  return fit_.status;
+}
+
+bool Wlsp::triangularise(double (&rhs)[3]) noexcept {
+  for (auto& row : r_) {
+    row[0] = row[1] = row[2] = 0.0;
+  }
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    const Columns a = whitened_columns(i);
+    const Complex b = whiten(i, inverse_response(response_.points()[i]));
+    double real[3] = {a.column[0].re, a.column[1].re, a.column[2].re};
+    double imaginary[3] = {a.column[0].im, a.column[1].im, a.column[2].im};
+    if (!all_finite(real) || !all_finite(imaginary) || !is_finite(b.re) || !is_finite(b.im)) {
+      return false;
+    }
+    rotate_in(r_, rhs, real, b.re);
+    rotate_in(r_, rhs, imaginary, b.im);
+  }
+  return all_finite(rhs);
+}
+
+bool Wlsp::triangularise_with_common(double (&rhs)[3]) noexcept {
+  // The column of the common effect first, and its own observation as the first row.
+  double r[4][4] = {{1.0, 0.0, 0.0, 0.0}};
+  double full_rhs[4] = {};
+  common_squares_ = 1.0;
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    const Columns a = whitened_columns(i);
+    const Complex b = whiten(i, inverse_response(response_.points()[i]));
+    const Complex c = whitened_common(i);
+    double real[4] = {c.re, a.column[0].re, a.column[1].re, a.column[2].re};
+    double imaginary[4] = {c.im, a.column[0].im, a.column[1].im, a.column[2].im};
+    common_squares_ += norm(c);
+    rotate_in(r, full_rhs, real, b.re);
+    rotate_in(r, full_rhs, imaginary, b.im);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      r_[k][j] = r[k + 1][j + 1];
+    }
+    rhs[k] = full_rhs[k + 1];
+  }
+  return all_finite(rhs) && is_finite(common_squares_);
+}
+
+bool Wlsp::fill_estimates() noexcept {
+  const double root = (scaled_[0] < 0.0 ? -1.0 : 1.0) * sqrt(scaled_[0] * scaled_[2]);
+  const double f0_hz = max_frequency_hz_ * sqrt(scaled_[0] / scaled_[2]);
+  const double beta = scaled_[1] / root;
+  fit_.model = {1.0 / scaled_[0], f0_hz, beta};
+
+  const double jacobian[3][3] = {
+      {-1.0 / (scaled_[0] * scaled_[0]), 0.0, 0.0},
+      {0.5 * f0_hz / scaled_[0], 0.0, -0.5 * f0_hz / scaled_[2]},
+      {-0.5 * beta / scaled_[0], 1.0 / root, -0.5 * beta / scaled_[2]},
+  };
+  // The covariance of the scaled mu is (R^T R)^-1, so that of the estimates is T T^T with T = J
+  // R^-1.
+  double t[3][3] = {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    double row[3] = {jacobian[i][0], jacobian[i][1], jacobian[i][2]};
+    solve_transposed(r_, row);
+    for (std::size_t k = 0; k < 3; ++k) {
+      t[i][k] = row[k];
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      fit_.covariance[i][j] = t[i][0] * t[j][0] + t[i][1] * t[j][1] + t[i][2] * t[j][2];
+    }
+  }
+  fit_.u_sensitivity = sqrt(fit_.covariance[0][0]);
+  fit_.u_natural_frequency_hz = sqrt(fit_.covariance[1][1]);
+  fit_.u_damping = sqrt(fit_.covariance[2][2]);
+  const double uncertainties[3] = {fit_.u_sensitivity, fit_.u_natural_frequency_hz, fit_.u_damping};
+  return is_finite(fit_.model.sensitivity) && is_finite(f0_hz) && is_finite(beta) &&
+         all_finite(uncertainties);
+}
+
+Complex Wlsp::whiten(std::size_t index, Complex value) const noexcept {
+  const ComplexCholesky& l = factors_[index];
+  const double re = value.re / l.re_re;
+  return {re, (value.im - l.im_re * re) / l.im_im};
+}
+
+Wlsp::Columns Wlsp::whitened_columns(std::size_t index) const noexcept {
+  const double w = response_.points()[index].frequency_hz / max_frequency_hz_;
+  return {{whiten(index, {1.0, 0.0}), whiten(index, {0.0, 2.0 * w}), whiten(index, {-w * w, 0.0})}};
+}
+
+Complex Wlsp::whitened_common(std::size_t index) const noexcept {
+  const double w = response_.points()[index].frequency_hz / max_frequency_hz_;
+  const Complex modelled = {first_scaled_[0] - w * w * first_scaled_[2],
+                            2.0 * w * first_scaled_[1]};
+  return whiten(index, -response_.common()[index] * modelled);
+}
+
+double Wlsp::common_effect_of(const double (&scaled)[3]) const noexcept {
+  if (!has_common_) {
+    return 0.0;
+  }
+  // The z that makes |residual - c z|^2 + z^2 least.
+  double product = 0.0;
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    const Complex c = whitened_common(i);
+    const Complex residual = whitened_residual(i, scaled);
+    product += c.re * residual.re + c.im * residual.im;
+  }
+  return product / common_squares_;
+}
+
+Complex Wlsp::whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept {
+  const ResponsePoint& point = response_.points()[index];
+  const double w = point.frequency_hz / max_frequency_hz_;
+  const Complex model = {scaled[0] - w * w * scaled[2], 2.0 * w * scaled[1]};
+  return whiten(index, inverse_response(point) - model);
+}
+
+double Wlsp::chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept {
+  double sum = common_effect * common_effect;
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    const Complex residual = whitened_residual(i, scaled);
+    sum += norm(has_common_ ? residual - common_effect * whitened_common(i) : residual);
+  }
+  return sum;
+}
+
+Complex Wlsp::normalised_residual(std::size_t index) const noexcept {
+  const Complex residual = whitened_residual(index, scaled_);
+  return has_common_ ? residual - fit_.common_effect * whitened_common(index) : residual;
+}
+
+double Wlsp::chi_square_of(const Accelerometer& model) const noexcept {
+  const double ratio = max_frequency_hz_ / model.natural_frequency_hz;
+  const double scaled[3] = {1.0 / model.sensitivity, model.damping * ratio / model.sensitivity,
+                            ratio * ratio / model.sensitivity};
+  return chi_square_of_scaled(scaled, common_effect_of(scaled));
+}
+
+Status WlspDraws::start(const Wlsp& fit, std::uint32_t draws,
+                        const WichmannHill& generator) noexcept {
+  if (fit.result().status != Status::kOk) {
+    return fit.result().status;
+  }
+  if (fit.response().size() == 0) {
+    return Status::kTooFewPoints;
+  }
+  if (draws < 2) {
+    return Status::kInvalidArgument;
+  }
+  *this = WlspDraws();
+  generator_ = generator;
+  wanted_ = draws;
+  const Accelerometer& model = fit.result().model;
+  estimate_[0] = model.sensitivity;
+  estimate_[1] = model.natural_frequency_hz;
+  estimate_[2] = model.damping;
+  return Status::kOk;
+}
+
+void WlspDraws::step(const Wlsp& fit, std::uint32_t count) noexcept {
+  const std::uint32_t left = wanted_ - made_;
+  const std::uint32_t end = made_ + (count < left ? count : left);
+  for (; made_ < end; ++made_) {
+    double deviation[3] = {};
+    if (!draw(fit, deviation)) {
+      ++discarded_;
+      continue;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum_[i] += deviation[i];
+      for (std::size_t j = 0; j < 3; ++j) {
+        products_[i][j] += deviation[i] * deviation[j];
+      }
+    }
+  }
+}
+
+bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
+  // The right-hand side A^T z of the normal equations for the difference from the measured values:
+  // small numbers, so that solving with R^T R loses nothing that matters.
+  double x[3] = {};
+  double columns_common[3] = {};  // A^T c and c^T z, for the common part's share of the weights.
+  double common_z = 0.0;
+  bool possible = true;
+  double together = 0.0;
+  if (fit.has_common_) {
+    const double u1 = generator_.next();
+    const double u2 = generator_.next();
+    together = box_muller(u1, u2).first;
+  }
+  for (std::size_t i = 0; i < fit.response_.size(); ++i) {
+    const ResponsePoint& measured = fit.response_.points()[i];
+    const double u1 = generator_.next();
+    const double u2 = generator_.next();
+    const NormalPair normal = box_muller(u1, u2);
+    ResponsePoint drawn = measured;
+    drawn.amplitude += drawn.u_amplitude * normal.first;
+    drawn.amplitude *= 1.0 + fit.response_.common()[i] * together;
+    drawn.phase_rad += drawn.u_phase_rad * normal.second;
+    if (!(drawn.amplitude > 0.0)) {
+      possible = false;  // The other points still take their numbers: each draw keeps its place in
+                         // the sequence.
+      continue;
+    }
+    const Complex z = fit.whiten(i, inverse_response(drawn) - inverse_response(measured));
+    const Wlsp::Columns a = fit.whitened_columns(i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] += a.column[k].re * z.re + a.column[k].im * z.im;
+    }
+    if (fit.has_common_) {
+      const Complex c = fit.whitened_common(i);
+      common_z += c.re * z.re + c.im * z.im;
+      for (std::size_t k = 0; k < 3; ++k) {
+        columns_common[k] += a.column[k].re * c.re + a.column[k].im * c.im;
+      }
+    }
+  }
+  if (fit.has_common_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] -= columns_common[k] * (common_z / fit.common_squares_);
+    }
+  }
+  solve_transposed(fit.r_, x);
+  solve_upper(fit.r_, x);
+  const double scaled[3] = {fit.scaled_[0] + x[0], fit.scaled_[1] + x[1], fit.scaled_[2] + x[2]};
+  if (!possible || !(scaled[0] > 0.0) || !(scaled[2] > 0.0) || !all_finite(scaled)) {
+    return false;
+  }
+  deviation[0] = 1.0 / scaled[0] - estimate_[0];
+  deviation[1] = fit.max_frequency_hz_ * sqrt(scaled[0] / scaled[2]) - estimate_[1];
+  deviation[2] = scaled[1] / sqrt(scaled[0] * scaled[2]) - estimate_[2];
+  return true;
+}
+
+WlspDrawsResult WlspDraws::result() const noexcept {
+  WlspDrawsResult result;
+  result.draws = made_ - discarded_;
+  result.discarded = discarded_;
+  if (result.draws == 0) {
+    return result;
+  }
+  const double n = static_cast<double>(result.draws);
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.mean[i] = estimate_[i] + sum_[i] / n;
+    if (result.draws < 2) {
+      continue;
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      result.covariance[i][j] = (products_[i][j] - sum_[i] * sum_[j] / n) / (n - 1.0);
+    }
+  }
+  return result;
+}
+
+}  // namespace emax

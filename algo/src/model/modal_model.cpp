@@ -1,0 +1,210 @@
+// Impulse and step response, peak, settling time and Gramians of the error system.
+#include "emax/model/modal_model.hpp"
+
+#include "emax/base/complex_exp.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/model/response_scan.hpp"
+
+namespace emax {
+namespace {
+
+/// Re sum residue * e^(pole t).
+double response(Span<const Mode> modes, double time_s) noexcept {
+  double sum = 0.0;
+  for (const Mode& mode : modes) {
+    sum += real_of_product(mode.residue, exp(time_s * mode.pole));
+  }
+  return sum;
+}
+
+}  // namespace
+
+Status ModalModel::set(const Accelerometer& device, const Butterworth& filter,
+                       Criterion criterion) noexcept {
+  const Status device_status = validate(device);
+  if (device_status != Status::kOk) {
+    return device_status;
+  }
+  const Status filter_status = validate(filter);
+  if (filter_status != Status::kOk) {
+    return filter_status;
+  }
+  device_ = device;
+  filter_ = filter;
+  criterion_ = criterion;
+  const FilterModes filter_modes = modes_of(filter);
+  modes_[0] = mode_of(device);
+  for (std::size_t i = 0; i < filter_modes.count; ++i) {
+    modes_[1 + i] = {filter_modes.modes[i].pole, -filter_modes.modes[i].residue};
+  }
+  count_ = 1 + filter_modes.count;
+  fill_gramians(count_);
+  fill_sums_over_filter();
+  fill_switch_weights();
+  return Status::kOk;
+}
+
+Status ModalModel::set_device(const Accelerometer& device) noexcept {
+  const Status status = validate(device);
+  if (status != Status::kOk) {
+    return status;
+  }
+  device_ = device;
+  modes_[0] = mode_of(device);
+  fill_gramians(1);
+  fill_switch_weights();
+  return Status::kOk;
+}
+
+Status ModalModel::set_gain(double gain) noexcept {
+  Butterworth filter = filter_;
+  filter.gain = gain;
+  const Status status = validate(filter);
+  if (status != Status::kOk) {
+    return status;
+  }
+  filter_ = filter;
+  const FilterModes filter_modes = modes_of(filter);
+  for (std::size_t i = 0; i < filter_modes.count; ++i) {
+    modes_[1 + i].residue = -filter_modes.modes[i].residue;
+  }
+  fill_sums_over_filter();
+  fill_switch_weights();
+  return Status::kOk;
+}
+
+void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
+  const bool difference = criterion_ == Criterion::kEnergyDifference;
+  for (std::size_t i = 0; i < first_row_count; ++i) {
+    const Complex pole = modes_[i].pole;
+    for (std::size_t j = i; j < count_; ++j) {
+      double weight = 1.0;
+      if (difference) {
+        weight = j == 0 ? 1.0 : (i == 0 ? 0.0 : -1.0);
+      }
+      gramian_[pair(i, j)] = weight * reciprocal(pole + modes_[j].pole);
+      conjugate_gramian_[pair(i, j)] = weight * reciprocal(pole + conj(modes_[j].pole));
+    }
+  }
+}
+
+Complex ModalModel::gramian_row(std::size_t i, const Complex* output) const noexcept {
+  Complex sum;
+  for (std::size_t j = 0; j < count_; ++j) {
+    sum = sum + gramian(i, j) * output[j] + conjugate_gramian(i, j) * conj(output[j]);
+  }
+  return 0.5 * sum;
+}
+
+double ModalModel::gramian_form(const Complex* output) const noexcept {
+  double diagonal = 0.0;
+  double pairs = 0.0;
+  const Complex* g = gramian_;
+  const Complex* h = conjugate_gramian_;
+  for (std::size_t j = 0; j < count_; ++j) {
+    // Re(w_i (G_ij w_j + H_ij conj w_j)), as a real form of the two real and imaginary parts.
+    const Complex w = output[j];
+    double row = 0.0;
+    for (std::size_t i = 0; i < j; ++i, ++g, ++h) {
+      row += output[i].re * ((g->re + h->re) * w.re + (h->im - g->im) * w.im) -
+             output[i].im * ((g->im + h->im) * w.re + (g->re - h->re) * w.im);
+    }
+    pairs += row;
+    diagonal += real_of_product(*g, w * w) + h->re * norm(w);
+    ++g;
+    ++h;
+  }
+  return pairs + 0.5 * diagonal;
+}
+
+Complex ModalModel::correlation(std::size_t i) const noexcept {
+  Complex kernel;
+  for (std::size_t j = 1; j < count_; ++j) {
+    kernel = kernel + gramian(i, j) * modes_[j].residue +
+             conjugate_gramian(i, j) * conj(modes_[j].residue);
+  }
+  kernel = kernel + gramian(i, 0) * modes_[0].residue +
+           conjugate_gramian(i, 0) * conj(modes_[0].residue);
+  return -0.5 * (modes_[i].residue * kernel);
+}
+
+void ModalModel::fill_sums_over_filter() noexcept {
+  for (std::size_t i = 1; i < count_; ++i) {
+    inverse_pole_[i] = reciprocal(modes_[i].pole);
+    settled_[i] = modes_[i].residue * inverse_pole_[i];
+  }
+  for (std::size_t i = 1; i < count_; ++i) {
+    filter_settled_[i] = {};
+    for (std::size_t j = 1; j < count_; ++j) {
+      filter_settled_[i] = filter_settled_[i] + gramian(i, j) * settled_[j] +
+                           conjugate_gramian(i, j) * conj(settled_[j]);
+    }
+  }
+}
+
+void ModalModel::fill_switch_weights() noexcept {
+  inverse_pole_[0] = reciprocal(modes_[0].pole);
+  settled_[0] = modes_[0].residue * inverse_pole_[0];
+  Complex settled[kMaxModes];
+  settled[0] = gramian(0, 0) * settled_[0] + conjugate_gramian(0, 0) * conj(settled_[0]);
+  for (std::size_t i = 1; i < count_; ++i) {
+    const Complex g = gramian_[pair(0, i)];
+    const Complex h = conjugate_gramian_[pair(0, i)];
+    settled[0] = settled[0] + g * settled_[i] + h * conj(settled_[i]);
+    settled[i] = filter_settled_[i] + g * settled_[0] + conj(h) * conj(settled_[0]);
+  }
+  // What a constant unit input ends up as in the output that a mode is part of: y for the
+  // integral-square error, ya or minus yf, each with its own sign, for the energy difference.
+  const double sum = device_.sensitivity + filter_.gain;
+  const double difference = device_.sensitivity - filter_.gain;
+  const bool is_difference = criterion_ == Criterion::kEnergyDifference;
+  static_power_ = difference * (is_difference ? sum : difference);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double of_its_part = i == 0 ? device_.sensitivity : filter_.gain;
+    const double static_gain = is_difference ? of_its_part : difference;
+    switch_weight_[i] = 0.5 * (modes_[i].residue * settled[i]) + static_gain * settled_[i];
+  }
+}
+
+double ModalModel::impulse_response(double time_s) const noexcept {
+  return time_s < 0.0 ? 0.0 : response(modes(), time_s);
+}
+
+double ModalModel::device_impulse_response(double time_s) const noexcept {
+  return time_s < 0.0 ? 0.0 : response(modes().first(1), time_s);
+}
+
+double ModalModel::filter_impulse_response(double time_s) const noexcept {
+  return time_s < 0.0 ? 0.0 : -response(modes().from(1), time_s);
+}
+
+double ModalModel::step_response(double time_s) const noexcept {
+  if (!(time_s > 0.0)) {
+    return 0.0;
+  }
+  double sum = device_.sensitivity - filter_.gain;
+  for (std::size_t i = 0; i < count_; ++i) {
+    sum += real_of_product(settled_[i], exp(time_s * modes_[i].pole));
+  }
+  return sum;
+}
+
+Peak ModalModel::peak() const noexcept {
+  PeakSearch search;
+  search.start(*this);
+  while (!search.done()) {
+    search.step(*this);
+  }
+  return search.result();
+}
+
+SettlingTime ModalModel::settling_time(double fraction) const noexcept {
+  SettlingSearch search;
+  search.start(*this, fraction * abs(peak().value));
+  while (!search.done()) {
+    search.step(*this);
+  }
+  return search.result();
+}
+
+}  // namespace emax

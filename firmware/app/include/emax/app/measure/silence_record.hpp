@@ -1,0 +1,67 @@
+// What the channels carry while the drive is at zero: offset, noise and hum.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/app/measure/frame_sine_fit.hpp"
+#include "emax/base/span.hpp"
+#include "emax/hal/analog_stream.hpp"
+#include "emax/identify/sine_fit.hpp"
+
+namespace emax::app {
+
+inline constexpr std::size_t kHumLines = 6;
+/// Mains of both kinds with their second and third harmonic.
+inline constexpr std::array<double, kHumLines> kHum_hz = {50.0, 100.0, 150.0, 60.0, 120.0, 180.0};
+
+/// One channel without drive.
+struct SilentChannel {
+  double offset_v = 0.0;
+  double drift_v = 0.0;                      ///< Mean of the second half minus mean of the first.
+  double noise_v = 0.0;                      ///< Standard deviation of a sample, without the hum.
+  std::array<double, kHumLines> hum_v = {};  ///< Amplitudes.
+
+  /// @returns The root-mean-square part of the hum that a sine fit at this frequency takes for
+  /// signal, over a record of this duration: |sin(x)/x|, x = pi (difference of frequencies)
+  /// duration, by its envelope min(1, 1/x). Of the real part and of the imaginary part alike.
+  double hum_in_fit_v(double frequency_hz, double duration_s) const noexcept;
+};
+
+/// Records both channels with one sine fit per line of the mains.
+///
+/// 0.2 s are whole periods of all lines, so they do not disturb each other. 4.4 KiB.
+class SilenceRecord {
+ public:
+  static constexpr double kDuration_s = 0.2;
+
+  void start(const hal::StreamFormat& format) noexcept;
+  /// @returns The frames that the record takes in all.
+  std::uint32_t frames() const noexcept { return 2 * half_; }
+  void add(Span<const hal::Frame> frames) noexcept;
+  SilentChannel reference() const noexcept;
+  SilentChannel device() const noexcept;
+
+ private:
+  /// Sum of the words of the second half minus that of the first.
+  struct Rise {
+    std::int64_t reference = 0;
+    std::int64_t device = 0;
+  };
+
+  using Lines = std::array<SineFitResult, kHumLines>;
+
+  SilentChannel evaluate(const Lines& lines, std::int64_t rise) const noexcept;
+
+  std::array<FrameSineFit, kHumLines> fits_;
+  Rise rise_;
+  double volts_per_word_ = 0.0;
+  std::uint32_t half_ = 0;  // Frames of half a record.
+  std::uint32_t frames_ = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<SilenceRecord>);
+
+}  // namespace emax::app

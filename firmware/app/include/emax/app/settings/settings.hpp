@@ -1,0 +1,69 @@
+// What the user sets before an evaluation, with the defaults of the instrument.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/base/status.hpp"
+#include "emax/base/wichmann_hill.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/model/modal_model.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
+
+namespace emax::app {
+
+inline constexpr std::size_t kMaxTrendPoints = 16;
+inline constexpr std::uint32_t kMaxTrials = 1'000'000'000;
+inline constexpr double kMaxDuration_s = 1000.0;
+/// Limits of a and of the filter's gain, far from where their squares would overflow.
+inline constexpr double kMinLimit_mps2 = 1e-9;
+inline constexpr double kMaxLimit_mps2 = 1e9;
+inline constexpr double kMaxGain = 1e9;
+
+enum class GainMode : std::uint8_t {
+  kAuto,   ///< The estimate of S, the same in every trial.
+  kFixed,  ///< The number given.
+  kTrack,  ///< The S of each trial.
+};
+
+/// Everything but the device. `Settings{}` holds the defaults.
+struct Settings {
+  int filter_order = 10;
+  double cutoff_hz = 1000.0;
+  GainMode gain_mode = GainMode::kAuto;
+  double gain = 0.0;          ///< In V/(m/s^2); used by GainMode::kFixed only.
+  double duration_s = 0.002;  ///< T.
+  bool limit_is_auto = true;  ///< a is the number of S, as in the paper.
+  double limit_mps2 = 0.0;    ///< a; used if `limit_is_auto` is false.
+  Criterion criterion = Criterion::kIntegralSquareError;
+  Method method = Method::kBest;
+  double step_s = 2e-6;           ///< The paper's quantization step; Method::kPaper only.
+  std::uint32_t iterations = 30;  ///< The paper's J; Method::kPaper only.
+  std::uint32_t trials = 200000;
+  bool adaptive = false;  ///< JCGM 101 7.9 finds the number of trials; `trials` is then unused.
+  double probability = 0.95;
+  Distribution distribution = Distribution::kBox;
+  bool birge = false;  ///< Trials take the uncertainties times the fit's Birge ratio, if above 1.
+  std::array<std::uint32_t, 4> seed = {123456789, 345678901, 567890123, 789012345};
+  Generator generator = Generator::k2006;
+  std::array<double, kMaxTrendPoints> trend_s = {0.002, 0.004, 0.006, 0.008, 0.010};
+  std::size_t trend_count = 5;  ///< 0 for no trend, else 2 or more.
+};
+
+static_assert(std::is_trivially_copyable_v<Settings>);
+
+/// What `check()` found wrong: which setting, and in words what it must be.
+struct SettingsError {
+  const char* setting = nullptr;  ///< The option's name, "time" for instance; null if all is well.
+  const char* expectation = nullptr;  ///< "more than 0 and at most 1000 s".
+};
+
+/// Checks each setting against its range, and those that limit one another.
+///
+/// @returns The first that is wrong, in the order of `Settings`; nulls if there is none. What only
+/// the device decides, such as the number of cells that T takes, is left to the evaluation.
+SettingsError check(const Settings& settings) noexcept;
+
+}  // namespace emax::app

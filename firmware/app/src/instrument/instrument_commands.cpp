@@ -1,0 +1,217 @@
+// The command table of the instrument, one line for each command; IEEE 488.2, and what starts work.
+#include "instrument_commands.hpp"
+
+#include "emax/app/base/version.hpp"
+#include "emax/app/scpi/standard_commands.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/energy/fixed_point.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+}  // namespace
+
+void InstrumentCommands::identify_instrument(Instrument& i, Call& call) noexcept {
+  scpi::Response& answer = call.answer();
+  answer.word("emax").word(i.board_.name).word(i.board_.serial).word(kVersion);
+}
+
+void InstrumentCommands::reset(Instrument& i, Call& /*call*/) noexcept { i.reset(); }
+
+void InstrumentCommands::clear(Instrument& i, Call& call) noexcept {
+  scpi::clear_status(call);
+  i.completes_operation_ = false;
+}
+
+void InstrumentCommands::operation_complete(Instrument& i, Call& call) noexcept {
+  if (call.is_query()) {
+    if (i.is_working()) {
+      call.wait();
+      return;
+    }
+    call.answer().integer(1);
+    return;
+  }
+  if (i.is_working()) {
+    i.completes_operation_ = true;
+    return;
+  }
+  call.status().add_events(scpi::kOperationComplete);
+}
+
+void InstrumentCommands::wait(Instrument& i, Call& call) noexcept {
+  if (i.is_working()) {
+    call.wait();
+  }
+}
+
+void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
+  call.answer().integer(static_cast<std::int64_t>(floor(kPercent * i.progress())));
+  const char* name = i.stage_name();
+  std::size_t length = 0;
+  while (name[length] != '\0') {
+    ++length;
+  }
+  call.answer().string(Span<const char>(name, length));
+}
+
+void InstrumentCommands::abort(Instrument& i, Call& /*call*/) noexcept { i.abort(); }
+
+void InstrumentCommands::initiate_sweep(Instrument& i, Call& call) noexcept {
+  if (i.is_working()) {
+    call.fail(ErrorCode::kInitIgnored, "running: ABOR or *WAI first");
+    return;
+  }
+  if (const Refusal refusal = i.begin_sweep()) {
+    call.fail(refusal.code, refusal.words);
+    return;
+  }
+  i.is_background_ = true;
+}
+
+void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
+  if (i.is_working()) {
+    call.wait();
+    return;
+  }
+  call.answer().integer(run_self_test(i.workspace_.self_test));
+}
+
+namespace {
+
+using C = InstrumentCommands;
+using I = Instrument;
+using Change = C::Change;
+using scpi::Forms;
+using scpi::IntegerRule;
+using scpi::NumberRule;
+using scpi::standard;
+
+// Ranges of the settings; `check()` has the last word.
+constexpr double kNanoSecond = 1e-9;
+constexpr double kOfBoard = 0.0;  // A default that is looked up.
+constexpr Settings kDefaults;
+constexpr IntegerRule kOrder = {1, kMaxFilterOrder, kDefaults.filter_order};
+constexpr NumberRule kCutoff = {kMinFrequency_hz, kMaxFrequency_hz, kDefaults.cutoff_hz,
+                                scpi::kHertz};
+constexpr NumberRule kTime = {kNanoSecond, kMaxDuration_s, kDefaults.duration_s, scpi::kSecond};
+constexpr NumberRule kStep = {kNanoSecond, kMaxDuration_s, kDefaults.step_s, scpi::kSecond};
+constexpr IntegerRule kIterations = {1, kMaxIterations, kDefaults.iterations};
+constexpr IntegerRule kTrials = {kMinTrials, kMaxTrials, kDefaults.trials};
+constexpr NumberRule kProbability = {1e-6, 0.999999, kDefaults.probability, nullptr};
+constexpr NumberRule kSettle = {0.0, 10.0, kOfBoard, scpi::kSecond};
+constexpr NumberRule kLevel = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
+constexpr NumberRule kAccelerationLimit = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
+constexpr NumberRule kSlew = {1e-9, 1e9, kOfBoard, scpi::kVoltPerSecond};
+constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence"};
+constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
+constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
+constexpr const char* kGeneratorWords[] = {"WH2006", "WH1982"};
+
+constexpr auto kSet = Forms::kSet;
+constexpr auto kQuery = Forms::kQuery;
+constexpr auto kBoth = Forms::kSetAndQuery;
+constexpr std::uint8_t kPlain = scpi::kPlain;
+constexpr std::uint8_t kImmediate = scpi::kImmediate;
+constexpr std::uint8_t kQueryLimits = scpi::kQueryLimits;
+
+// Only what answers nothing, or is asked for in order to see how far a query is, overtakes: all
+// other answers come in the order of their queries.
+// clang-format off
+constexpr scpi::Command<Instrument> kCommands[] = {
+    {"*CLS", kSet, "", "Clears errors and events", kPlain, C::clear},
+    {"*ESE", kBoth, "<mask>", "Events that count in bit 5 of *STB?", kPlain, standard<scpi::event_enable, I>},
+    {"*ESR", kQuery, "", "Events since the last look; clears them", kPlain, standard<scpi::event_status, I>},
+    {"*IDN", kQuery, "", "emax,board,serial,version", kPlain, C::identify_instrument},
+    {"*OPC", kBoth, "", "Sets event bit 0, or answers 1, once nothing runs", kPlain, C::operation_complete},
+    {"*RCL", kSet, "<0..3>", "Takes the settings of a slot", kPlain, C::recall},
+    {"*RST", kSet, "", "Ends what runs; default settings; forgets points and device", kPlain, C::reset},
+    {"*SAV", kSet, "<0..3>", "Keeps the settings in a slot, over power off", kPlain, C::save},
+    {"*SRE", kBoth, "<mask>", "Bits of *STB? that count in its bit 6", kPlain, standard<scpi::service_enable, I>},
+    {"*STB", kQuery, "", "Status byte", kPlain, standard<scpi::status_byte, I>},
+    {"*TST", kQuery, "", "Numeric self test: 0, or the number of the check that failed", kPlain, C::self_test},
+    {"*WAI", kSet, "", "The next command begins once nothing runs", kPlain, C::wait},
+
+    {"SYSTem:ERRor[:NEXT]", kQuery, "", "The oldest error; 0,\"No error\" if none", kPlain, standard<scpi::next_error, I>},
+    {"SYSTem:ERRor:COUNt", kQuery, "", "Errors in the queue", kPlain, standard<scpi::error_count, I>},
+    {"SYSTem:VERSion", kQuery, "", "1999.0", kPlain, standard<scpi::version, I>},
+    {"SYSTem:PROGress", kQuery, "", "Percent and name of the stage that runs; overtakes queries that wait", kImmediate, C::progress},
+
+    {"STATus:OPERation[:EVENt]", kQuery, "", "Bit 3 sweeping, 4 measuring, 8 computing; clears", kPlain, standard<scpi::operation_event, I>},
+    {"STATus:OPERation:CONDition", kQuery, "", "The same, now", kPlain, standard<scpi::operation_condition, I>},
+    {"STATus:OPERation:ENABle", kBoth, "<mask>", "Bits that count in bit 7 of *STB?", kPlain, standard<scpi::operation_enable, I>},
+    {"STATus:OPERation:PTRansition", kBoth, "<mask>", "Bits whose rise is an event", kPlain, standard<scpi::operation_positive, I>},
+    {"STATus:OPERation:NTRansition", kBoth, "<mask>", "Bits whose fall is an event", kPlain, standard<scpi::operation_negative, I>},
+    {"STATus:QUEStionable[:EVENt]", kQuery, "", "Bit 0 signal, 2 time, 6 polarity, 8 calibration or fit; clears", kPlain, standard<scpi::questionable_event, I>},
+    {"STATus:QUEStionable:CONDition", kQuery, "", "The same, of the last sweep or fit", kPlain, standard<scpi::questionable_condition, I>},
+    {"STATus:QUEStionable:ENABle", kBoth, "<mask>", "Bits that count in bit 3 of *STB?", kPlain, standard<scpi::questionable_enable, I>},
+    {"STATus:QUEStionable:PTRansition", kBoth, "<mask>", "Bits whose rise is an event", kPlain, standard<scpi::questionable_positive, I>},
+    {"STATus:QUEStionable:NTRansition", kBoth, "<mask>", "Bits whose fall is an event", kPlain, standard<scpi::questionable_negative, I>},
+    {"STATus:PRESet", kSet, "", "Nothing enabled, rises are events", kPlain, standard<scpi::status_preset, I>},
+
+    {"[SENSe:]REFerence:SENSitivity", kBoth, "<V/(m/s2)>[,<percent>]", "Of the reference sensor, and its expanded uncertainty", kPlain, C::reference},
+    {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, ascending", kPlain, C::sweep_frequencies},
+    {"[SENSe:]SWEep:FREQuency:DEFault", kSet, "", "The 42 frequencies of the default sweep", kPlain, C::default_frequencies},
+    {"[SENSe:]SWEep:CYCLes", kBoth, "<n>", "Periods per repeat, at least", kQueryLimits, C::sweep_cycles},
+    {"[SENSe:]SWEep:SETTle", kBoth, "<s>", "Rest after each ramp; three periods at least", kQueryLimits, C::sweep_number<&SweepSettings::settle_s, kSettle>},
+    {"SOURce:LEVel", kBoth, "<m/s2>", "Peak acceleration to reach", kQueryLimits, C::sweep_number<&SweepSettings::level_mps2, kLevel>},
+    {"SOURce:LIMit", kBoth, "<m/s2>", "Peak acceleration never to exceed", kQueryLimits, C::sweep_number<&SweepSettings::limit_mps2, kAccelerationLimit>},
+    {"SOURce:SLEW", kBoth, "<V/s>", "Slope of the drive never to exceed", kQueryLimits, C::sweep_number<&SweepSettings::slew_v_per_s, kSlew>},
+
+    {"INITiate[:SWEep]", kSet, "", "Starts the sweep", kPlain, C::initiate_sweep},
+    {"INITiate:ENERgy", kSet, "", "Starts the search for the maximum energy", kPlain, C::initiate<Goal::kEnergy>},
+    {"INITiate:MCARlo", kSet, "", "Starts the Monte Carlo trials, after the energy", kPlain, C::initiate<Goal::kMonteCarlo>},
+    {"INITiate:TRENd", kSet, "", "Starts the trend, after the energy", kPlain, C::initiate<Goal::kTrend>},
+    {"INITiate:REPort", kSet, "", "Starts everything that the report shows", kPlain, C::initiate<Goal::kReport>},
+    {"ABORt", kSet, "", "Ends what runs, drive at zero; overtakes commands that wait", kImmediate, C::abort},
+
+    {"FETCh:FRESponse", kQuery, "", "n, then f,A,phi,uA,uphi of each point: Hz, V/(m/s2), degrees, standard u with the common part", kPlain, C::fetch},
+    {"TRACe:FRESponse:DATA", kSet, "<f>,<A>,<phi>,<uA>,<uphi>,...", "Adds points; expanded u (k = 2), degrees", kPlain, C::add_points},
+    {"TRACe:FRESponse:CLEar", kSet, "", "Forgets the points", kPlain, C::clear_points},
+    {"TRACe:FRESponse:POINts", kQuery, "", "Number of points", kPlain, C::count_points},
+
+    {"CALCulate:IDENtify", kQuery, "", "Fits the points: S,f0,beta,uS,uf0,ubeta,chi2,dof", kPlain, C::identify},
+    {"CALCulate:IDENtify:COVariance", kQuery, "", "Covariance of S, f0, beta, row by row", kPlain, C::covariance},
+    {"CALCulate:MODel", kBoth, "<S>,<f0>,<beta>[,<uS>,<uf0>,<ubeta>]", "The device by its parameters, standard u", kPlain, C::model},
+    {"CALCulate:FILTer:ORDer", kBoth, "<L>", "Order of the reference filter", kQueryLimits, C::integer<int, &Settings::filter_order, kOrder, Change::kEnergy>},
+    {"CALCulate:FILTer:FREQuency", kBoth, "<Hz>", "Its cutoff frequency", kQueryLimits, C::number<&Settings::cutoff_hz, kCutoff, Change::kEnergy>},
+    {"CALCulate:FILTer:GAIN", kBoth, "<g>|AUTO|TRACk", "Its gain; AUTO: the estimate of S, TRACk: the S of each trial", kQueryLimits, C::filter_gain},
+    {"CALCulate:ENERgy:TIME", kBoth, "<T>", "Length of the signal", kQueryLimits, C::number<&Settings::duration_s, kTime, Change::kEnergy>},
+    {"CALCulate:ENERgy:LIMit", kBoth, "<a>|AUTO", "The signal stays within +-a; AUTO: the number of S", kQueryLimits, C::energy_limit},
+    {"CALCulate:ENERgy:CRITerion", kBoth, "ISE|DIFFerence", "Energy of the error, or difference of the energies", kPlain, C::choice<Criterion, &Settings::criterion, kCriterionWords, Change::kEnergy>},
+    {"CALCulate:ENERgy:METHod", kBoth, "BEST|PAPer", "Many starts, or the fixed point of the paper", kPlain, C::choice<Method, &Settings::method, kMethodWords, Change::kEnergy>},
+    {"CALCulate:ENERgy:STEP", kBoth, "<s>", "Grid step of PAPer and FPA?", kQueryLimits, C::number<&Settings::step_s, kStep, Change::kPaper>},
+    {"CALCulate:ENERgy:ITERations", kBoth, "<J>", "Iterations of PAPer and FPA?, at most", kQueryLimits, C::integer<std::uint32_t, &Settings::iterations, kIterations, Change::kPaper>},
+    {"CALCulate:ENERgy", kQuery, "", "The maximum energy: E,xi,bound,n,t1,...,tn", kPlain, C::energy},
+    {"CALCulate:ENERgy:EVALuate", kQuery, "[<t1>,...]", "Energy of the signal that starts at +a and changes sign at these times", kPlain, C::evaluate},
+    {"CALCulate:ENERgy:FPA", kQuery, "", "The fixed point of the paper: iterations,E_0,E_1,...", kPlain, C::fixed_point},
+    {"CALCulate:AERRor", kQuery, "", "The largest absolute error, V", kPlain, C::absolute_error},
+    {"CALCulate:IMPulse", kQuery, "<t1>,...", "k(t)", kPlain, C::impulse_response},
+    {"CALCulate:SETTle", kQuery, "", "The 5 % settling time", kPlain, C::settling_time},
+    {"CALCulate:MCARlo:TRIals", kBoth, "<M>", "Number of trials", kQueryLimits, C::integer<std::uint32_t, &Settings::trials, kTrials, Change::kTrials>},
+    {"CALCulate:MCARlo:ADAPtive", kBoth, "<on>", "The number of trials by JCGM 101 7.9", kPlain, C::trials_switch<&Settings::adaptive>},
+    {"CALCulate:MCARlo:SEED", kBoth, "<a>,<b>,<c>,<d>", "Start of the random numbers", kPlain, C::seed},
+    {"CALCulate:MCARlo:GENerator", kBoth, "WH2006|WH1982", "Generator of Wichmann and Hill", kPlain, C::choice<Generator, &Settings::generator, kGeneratorWords, Change::kTrials>},
+    {"CALCulate:MCARlo:PROBability", kBoth, "<p>", "Coverage probability of the intervals", kQueryLimits, C::number<&Settings::probability, kProbability, Change::kTrials>},
+    {"CALCulate:MCARlo:DISTribution", kBoth, "BOX|NORMal", "Uniform within +-u, or normal with the fit's covariance", kPlain, C::choice<Distribution, &Settings::distribution, kDistributionWords, Change::kTrials>},
+    {"CALCulate:MCARlo:BIRGe", kBoth, "<on>", "Uncertainties times the fit's Birge ratio, if above 1", kPlain, C::trials_switch<&Settings::birge>},
+    {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
+    {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
+    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report},
+
+    {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
+    {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},
+};
+// clang-format on
+
+static_assert(scpi::first_bad_row(kCommands) == sizeof kCommands / sizeof kCommands[0]);
+
+}  // namespace
+
+scpi::Table<Instrument> Instrument::commands() noexcept {
+  return scpi::Table<Instrument>(kCommands);
+}
+
+}  // namespace emax::app

@@ -1,0 +1,180 @@
+// The handlers of the instrument's commands, one for each line of the table.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/app/instrument/instrument.hpp"
+#include "emax/app/scpi/call.hpp"
+#include "emax/app/store/saved_state.hpp"
+#include "emax/identify/frequency_response.hpp"
+
+namespace emax::app {
+
+/// A friend of the instrument. Handlers take the instrument that they act on and the call.
+struct InstrumentCommands {
+  using Call = scpi::Call;
+  using ErrorCode = scpi::ErrorCode;
+  using NumberRule = scpi::NumberRule;
+  using IntegerRule = scpi::IntegerRule;
+  using Change = Instrument::Change;
+  using Origin = Instrument::Origin;
+  using Refusal = Instrument::Refusal;
+
+  // Settings
+
+  /// Takes new settings over if they can be had together and nothing that runs needs the old ones.
+  static void take(Instrument& i, Call& call, const Settings& next, Change change) noexcept;
+  static void take(Instrument& i, Call& call, const SweepSettings& next) noexcept;
+
+  template <double Settings::*kMember, const NumberRule& kRule, Change kChange>
+  static void number(Instrument& i, Call& call) noexcept {
+    Settings next = i.settings_;
+    if (call.setting(kRule, next.*kMember, next.*kMember) &&
+        next.*kMember != i.settings_.*kMember) {
+      take(i, call, next, kChange);
+    }
+  }
+
+  template <typename Integer, Integer Settings::*kMember, const IntegerRule& kRule, Change kChange>
+  static void integer(Instrument& i, Call& call) noexcept {
+    std::int64_t value = 0;
+    if (!call.integer_setting(kRule, i.settings_.*kMember, value) ||
+        value == i.settings_.*kMember) {
+      return;
+    }
+    Settings next = i.settings_;
+    next.*kMember = static_cast<Integer>(value);
+    take(i, call, next, kChange);
+  }
+
+  template <bool Settings::*kMember>
+  static void trials_switch(Instrument& i, Call& call) noexcept {
+    Settings next = i.settings_;
+    if (call.boolean_setting(next.*kMember, next.*kMember) &&
+        next.*kMember != i.settings_.*kMember) {
+      take(i, call, next, Change::kTrials);
+    }
+  }
+
+  /// Enumerators count from 0 in the order of the words.
+  template <typename Enum, Enum Settings::*kMember, const char* const (&kWords)[2], Change kChange>
+  static void choice(Instrument& i, Call& call) noexcept {
+    std::size_t index = 0;
+    const auto current = static_cast<std::size_t>(i.settings_.*kMember);
+    if (!call.choice_setting(scpi::Words(kWords), current, index) || index == current) {
+      return;
+    }
+    Settings next = i.settings_;
+    next.*kMember = static_cast<Enum>(index);
+    take(i, call, next, kChange);
+  }
+
+  template <double SweepSettings::*kMember, const NumberRule& kRule>
+  static void sweep_number(Instrument& i, Call& call) noexcept {
+    sweep_number(i, call, kMember, kRule);
+  }
+  /// The default is that of the board.
+  static void sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
+                           NumberRule rule) noexcept;
+
+  static void sweep_cycles(Instrument& i, Call& call) noexcept;
+  static void filter_gain(Instrument& i, Call& call) noexcept;
+  static void energy_limit(Instrument& i, Call& call) noexcept;
+  static void seed(Instrument& i, Call& call) noexcept;
+  static void reference(Instrument& i, Call& call) noexcept;
+  static void sweep_frequencies(Instrument& i, Call& call) noexcept;
+  static void default_frequencies(Instrument& i, Call& call) noexcept;
+
+  // IEEE 488.2
+
+  static void identify_instrument(Instrument& i, Call& call) noexcept;
+  static void reset(Instrument& i, Call& call) noexcept;
+  static void clear(Instrument& i, Call& call) noexcept;
+  static void operation_complete(Instrument& i, Call& call) noexcept;
+  static void wait(Instrument& i, Call& call) noexcept;
+
+  // Slots
+
+  static bool take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept;
+  static void save(Instrument& i, Call& call) noexcept;
+  static void recall(Instrument& i, Call& call) noexcept;
+  static void self_test(Instrument& i, Call& call) noexcept;
+
+  // Work
+
+  static void progress(Instrument& i, Call& call) noexcept;
+  static void abort(Instrument& i, Call& call) noexcept;
+  static void initiate_sweep(Instrument& i, Call& call) noexcept;
+
+  template <Goal kGoal>
+  static void initiate(Instrument& i, Call& call) noexcept {
+    if (i.is_working()) {
+      call.fail(ErrorCode::kInitIgnored, "running: ABOR or *WAI first");
+      return;
+    }
+    if (i.has(kGoal)) {
+      return;
+    }
+    if (const Refusal refusal = i.begin_evaluation(kGoal)) {
+      call.fail(refusal.code, refusal.words);
+      return;
+    }
+    i.is_background_ = i.is_working();
+  }
+
+  /// Sees to what a query needs: true once it is there. Otherwise the query waits or has failed.
+  static bool provide(Instrument& i, Call& call, Goal goal) noexcept;
+
+  /// Whether a query may begin its computation: nothing runs, and none that it has begun before has
+  /// come to a bad end.
+  static bool can_go_on(Instrument& i, Call& call) noexcept;
+
+  // Points
+
+  static std::size_t point_count(const Instrument& i) noexcept;
+  static void answer_point(const Instrument& i, std::size_t index, scpi::Response& out) noexcept;
+  static void fetch(Instrument& i, Call& call) noexcept;
+  static void add_points(Instrument& i, Call& call) noexcept;
+
+  /// @returns What is wrong with the point; null if it was added.
+  static const char* add_point(FrequencyResponse& response, const double* numbers) noexcept;
+  static void clear_points(Instrument& i, Call& call) noexcept;
+  static void count_points(Instrument& i, Call& call) noexcept;
+
+  // Device
+
+  /// As `provide()`, for the fit: the device is then the one that the points give.
+  static bool provide_fit(Instrument& i, Call& call) noexcept;
+
+  /// The identification that was kept over power off, as long as there are no points.
+  static const Identification* kept(const Instrument& i) noexcept;
+  static void identify(Instrument& i, Call& call) noexcept;
+  static void answer_device(const Device& device, scpi::Response& out) noexcept;
+  static void covariance(Instrument& i, Call& call) noexcept;
+  static void model(Instrument& i, Call& call) noexcept;
+  static void take_device(Instrument& i, Call& call, const Device& device) noexcept;
+
+  // Energy
+
+  static void energy(Instrument& i, Call& call) noexcept;
+  static void evaluate(Instrument& i, Call& call) noexcept;
+  static void fixed_point(Instrument& i, Call& call) noexcept;
+  static void absolute_error(Instrument& i, Call& call) noexcept;
+  static void settling_time(Instrument& i, Call& call) noexcept;
+  static void impulse_response(Instrument& i, Call& call) noexcept;
+
+  /// The item's time is looked for among all that were given.
+  static void answer_impulse(Instrument& i, Call& call) noexcept;
+  static void monte_carlo(Instrument& i, Call& call) noexcept;
+  static void trend(Instrument& i, Call& call) noexcept;
+  static bool take_trend(Instrument& i, Call& call) noexcept;
+  static void report(Instrument& i, Call& call) noexcept;
+
+  // Diagnosis
+
+  static void random(Instrument& i, Call& call) noexcept;
+  static void memory(Instrument& i, Call& call) noexcept;
+};
+
+}  // namespace emax::app

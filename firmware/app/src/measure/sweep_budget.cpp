@@ -1,0 +1,153 @@
+// From the repeats of all points to the budget of each.
+#include "emax/app/measure/sweep_budget.hpp"
+
+#include "emax/base/elementary.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kSqrt3 = 1.7320508075688772;
+constexpr double kSqrt12 = 3.4641016151377544;
+constexpr double kPercentPerStandard = 200.0;  // Expanded with k = 2, in percent.
+constexpr double kHumShare = 0.05;
+constexpr std::uint32_t kFewDof = 30;
+constexpr double kNormalQuantile = 3.0902323061678132;  // 0.1 % lie beyond.
+
+double larger(double a, double b) noexcept { return a > b ? a : b; }
+double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
+
+// Re(a conj(b)).
+double projected(Complex a, Complex b) noexcept { return a.re * b.re + a.im * b.im; }
+
+// The value of chi-square over its degrees of freedom that chance exceeds once in 1000 (Wilson,
+// Hilferty 1931).
+double chi_square_limit(double dof) noexcept {
+  const double v = 2.0 / (9.0 * dof);
+  const double root = 1.0 - v + kNormalQuantile * sqrt(v);
+  return root * root * root;
+}
+
+// Variance of a component of the ratio, relative, of a fit over so many samples.
+double ratio_variance(const PointScatter& p, double reference_v, double device_v,
+                      double samples) noexcept {
+  return 2.0 / samples *
+         (reference_v * reference_v / norm(p.reference) + device_v * device_v / norm(p.device));
+}
+
+double relative_hum(const PointScatter& p, double frequency_hz, double samples,
+                    const BudgetInputs& inputs) noexcept {
+  const double duration_s = samples / inputs.sample_rate_hz;
+  return length(
+      inputs.silent_reference.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(p.reference)),
+      inputs.silent_device.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(p.device)));
+}
+
+}  // namespace
+
+PointScatter scatter_of(const Repeats& repeats) noexcept {
+  PointScatter p;
+  p.repeats = repeats.count;
+  const double share = 1.0 / static_cast<double>(repeats.count);
+  for (std::uint32_t k = 0; k < repeats.count; ++k) {
+    p.reference = p.reference + share * repeats.reference[k];
+    p.device = p.device + share * repeats.device[k];
+  }
+  for (std::uint32_t k = 0; k < repeats.count; ++k) {
+    const Complex r = (repeats.reference[k] - p.reference) / p.reference;
+    const Complex a = (repeats.device[k] - p.device) / p.device;
+    const Complex e = a - r;
+    p.reference_sum -= projected(r, e);
+    p.device_sum += projected(a, e);
+    p.ratio_sum += norm(e);
+    p.largest = larger(p.largest, sqrt(norm(e)));
+  }
+  return p;
+}
+
+ChannelNoise pooled_noise(Span<const PointScatter> scatter, Span<const double> frequency_hz,
+                          const BudgetInputs& inputs) noexcept {
+  double reference = 0.0;
+  double device = 0.0;
+  double degrees = 0.0;
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
+    const PointScatter& p = scatter[i];
+    const double hum = relative_hum(p, frequency_hz[i], p.repeat_samples, inputs);
+    const double noise = ratio_variance(p, inputs.silent_reference.noise_v,
+                                        inputs.silent_device.noise_v, p.repeat_samples);
+    if (hum * hum > kHumShare * noise) {
+      continue;
+    }
+    reference += 0.25 * norm(p.reference) * p.repeat_samples * p.reference_sum;
+    device += 0.25 * norm(p.device) * p.repeat_samples * p.device_sum;
+    degrees += static_cast<double>(p.repeats - 1);
+  }
+  ChannelNoise noise;
+  noise.dof = static_cast<std::uint32_t>(2.0 * degrees);
+  if (degrees > 0.0) {
+    noise.reference_v = sqrt(larger(reference / degrees, 0.0));
+    noise.device_v = sqrt(larger(device / degrees, 0.0));
+  }
+  if (noise.dof < kFewDof) {
+    noise.reference_v = larger(noise.reference_v, inputs.silent_reference.noise_v);
+    noise.device_v = larger(noise.device_v, inputs.silent_device.noise_v);
+  }
+  noise.reference_v = larger(noise.reference_v, inputs.reference_step_v / kSqrt12);
+  noise.device_v = larger(noise.device_v, inputs.device_step_v / kSqrt12);
+  return noise;
+}
+
+PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
+                           const ChannelNoise& noise, const BudgetInputs& inputs) noexcept {
+  PointVerdict verdict;
+  PointBudget& budget = verdict.budget;
+  const double samples = scatter.repeat_samples * static_cast<double>(scatter.repeats);
+  const double pooled = ratio_variance(scatter, noise.reference_v, noise.device_v, samples);
+  const double dof = 2.0 * static_cast<double>(scatter.repeats - 1);
+  const double own = scatter.ratio_sum / dof / static_cast<double>(scatter.repeats);
+  const double hum_in_repeats = relative_hum(scatter, frequency_hz, scatter.repeat_samples, inputs);
+  const double explained =
+      pooled + hum_in_repeats * hum_in_repeats / static_cast<double>(scatter.repeats);
+  verdict.scatters = own > explained * chi_square_limit(dof);
+  budget.noise = sqrt(verdict.scatters ? own : pooled);
+  budget.quantisation = sqrt(ratio_variance(scatter, inputs.reference_step_v / kSqrt12,
+                                            inputs.device_step_v / kSqrt12, samples));
+  budget.hum = relative_hum(scatter, frequency_hz, samples, inputs);
+  const double reference_v = sqrt(norm(scatter.reference));
+  const double device_v = sqrt(norm(scatter.device));
+  const double distortion =
+      length(distortion_of(scatter.reference_rest_v, noise.reference_v, reference_v, samples),
+             distortion_of(scatter.device_rest_v, noise.device_v, device_v, samples));
+  // Harmonics only get into a fit of whole periods through the half frame at most by which a
+  // repeat misses them.
+  budget.distortion = distortion * 0.5 / scatter.repeat_samples / kSqrt3;
+  verdict.relative_u =
+      length(length(larger(budget.noise, budget.quantisation), budget.hum), budget.distortion);
+  budget.phase_rad = verdict.relative_u;
+  verdict.residual_percent =
+      100.0 * larger(scatter.reference_rest_v / reference_v, scatter.device_rest_v / device_v);
+  return verdict;
+}
+
+CommonBudget common_budget(const SweepSettings& settings, double check_change) noexcept {
+  CommonBudget common;
+  common.reference = settings.reference.expanded_percent / kPercentPerStandard;
+  common.gain = settings.gain_expanded_percent / kPercentPerStandard;
+  common.mounting = settings.mounting_expanded_percent / kPercentPerStandard;
+  common.drift = abs(check_change) / kSqrt3;
+  common.total =
+      length(length(common.reference, common.gain), length(common.mounting, common.drift));
+  return common;
+}
+
+double expected_scatter(const PointScatter& scatter, const BudgetInputs& inputs) noexcept {
+  return sqrt(ratio_variance(scatter, inputs.silent_reference.noise_v, inputs.silent_device.noise_v,
+                             scatter.repeat_samples));
+}
+
+double distortion_of(double rest_v, double noise_v, double amplitude_v, double samples) noexcept {
+  const double by_noise = noise_v * noise_v * (1.0 + 4.0 * sqrt(2.0 / samples));
+  const double squares = rest_v * rest_v - by_noise;
+  return squares > 0.0 ? sqrt(squares) / amplitude_v : 0.0;
+}
+
+}  // namespace emax::app

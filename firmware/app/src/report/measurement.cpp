@@ -1,0 +1,330 @@
+// The report's section on the measurement, and the report of one that failed.
+#include "emax/app/report/measurement.hpp"
+
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+
+#include "report_parts.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kMilli = 1e3;
+constexpr double kMicro = 1e6;
+constexpr double kPercent = 100.0;
+constexpr std::size_t kMaxLine = 98;
+
+double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
+
+/// The standard uncertainty of the amplitude with the common part.
+double total_u(const SweepPoint& point, const CommonBudget& common) noexcept {
+  const double shared = common.total * point.point.amplitude;
+  return sqrt(point.point.u_amplitude * point.point.u_amplitude + shared * shared);
+}
+
+/// Words below a label, in as many lines as they need.
+void wrap(ReportWriter& out, const char* words) noexcept {
+  std::size_t column = 2 + kLabelWidth;
+  out.indent();
+  for (bool is_first = true; *words != '\0'; is_first = false) {
+    std::size_t length = 0;
+    while (words[length] != '\0' && words[length] != ' ') {
+      ++length;
+    }
+    if (column + 1 + length > kMaxLine) {
+      out.line();
+      out.indent();
+      column = 2 + kLabelWidth;
+    } else if (!is_first) {
+      out.text(" ");
+      ++column;
+    }
+    out.text(Span<const char>(words, length));
+    column += length;
+    words += words[length] == ' ' ? length + 1 : length;
+  }
+  out.line();
+}
+
+void write_settings(const Measurement& measurement, ReportWriter& out) noexcept {
+  const SweepSettings& settings = measurement.sweep.settings();
+  out.label("Bench");
+  if (measurement.simulated != nullptr) {
+    out.text("simulated, seed ").integer(measurement.simulated->seed).text(", ");
+  }
+  out.general(measurement.format.sample_rate_hz, 10).text(" samples per second").line();
+  out.label("Level").general(settings.level_mps2, 6).text(" m/s^2");
+  out.and_g(settings.level_mps2, 6).text(" peak, never above ");
+  out.general(settings.limit_mps2, 6).text(" m/s^2");
+  out.and_g(settings.limit_mps2, 6).line();
+  out.label("Drive").text("never above ").general(settings.drive_limit_v, 6).text(" V and ");
+  out.general(settings.slew_v_per_s, 6).text(" V/s").line();
+  out.label("Record").integer(settings.repeats).text(" repeats of at least ");
+  out.integer(settings.cycles).text(" periods and ").general(kMilli * settings.repeat_s, 6);
+  out.text(" ms, each fitted by a sine").line();
+}
+
+void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
+  const ReferenceCalibration& reference = settings.reference;
+  out.label("Reference").general(reference.sensitivity[0], 7).text(" V/(m/s^2)");
+  out.and_v_per_g(reference.sensitivity[0], 7);
+  if (reference.count > 1) {
+    out.text(" at ").general(reference.frequency_hz[0], 6).text(" Hz, a table of ");
+    out.integer(reference.count).text(" frequencies");
+  }
+  out.text(", U = ").general(reference.expanded_percent, 4).text(" % (k = 2)").line();
+  out.label("Conditioners").text("gain ").general(settings.reference_gain, 6);
+  out.text(" (reference) and ").general(settings.device_gain, 6).text(" (device), U = ");
+  out.general(settings.gain_expanded_percent, 4).text(" % of their ratio").line();
+  out.label("Mounting").text("U = ").general(settings.mounting_expanded_percent, 4);
+  out.text(" %, with transverse motion and temperature").line();
+  out.label("Skew").text("device sampled ").general(kMicro * settings.skew_s, 6);
+  out.text(" us after the reference, taken out").line();
+}
+
+void write_silence(const Sweep& sweep, ReportWriter& out) noexcept {
+  const SilentChannel& reference = sweep.silent_reference();
+  const SilentChannel& device = sweep.silent_device();
+  out.label("Without drive");
+  if (!(reference.noise_v > 0.0) && !(device.noise_v > 0.0)) {
+    out.text("not measured, or without any noise").line();
+    return;
+  }
+  out.text("noise ").fixed(kMilli * reference.noise_v, 3).text(" mV (reference) and ");
+  out.fixed(kMilli * device.noise_v, 3).text(" mV (device)").line();
+}
+
+void write_check(const Sweep& sweep, ReportWriter& out) noexcept {
+  const double before = magnitude(sweep.check_before());
+  const double after = magnitude(sweep.check_after());
+  out.label("Check").text("at ").general(sweep.settings().check_hz, 6).text(" Hz ");
+  if (!(before > 0.0)) {
+    out.text("not measured").line();
+    return;
+  }
+  out.general(before, 6).text(" V/(m/s^2)");
+  out.and_v_per_g(before, 6).text(" before");
+  if (!(after > 0.0)) {
+    out.text(", not measured after").line();
+    return;
+  }
+  out.text(", ").general(after, 6);
+  out.and_v_per_g(after, 6).text(" after: ");
+  out.fixed(kPercent * (after / before - 1.0), 4).text(" % drift").line();
+}
+
+void write_flagged(const Sweep& sweep, ReportWriter& out) noexcept {
+  std::size_t flagged = 0;
+  for (const SweepPoint& point : sweep.points()) {
+    flagged += point.flagged ? 1u : 0u;
+  }
+  out.label("Flagged");
+  if (flagged == 0) {
+    out.text("none").line();
+    return;
+  }
+  out.integer(flagged).text(flagged == 1 ? " point, * below" : " points, * below").line();
+  for (const SweepPoint& point : sweep.points()) {
+    if (!point.flagged) {
+      continue;
+    }
+    out.indent().general(point.point.frequency_hz, 7);
+    if (point.scatters) {
+      out.text(" Hz: the repeats differ by more than chance, u ");
+      out.fixed(kPercent * point.budget.noise, 4).text(" % of the mean").line();
+    } else {
+      out.text(" Hz: distorted, the sine leaves ").fixed(point.residual_percent, 2);
+      out.text(" % of the amplitude over").line();
+    }
+  }
+}
+
+void write_common(const Sweep& sweep, ReportWriter& out) noexcept {
+  const CommonBudget& common = sweep.common();
+  out.label("Common to all points").text("reference ").fixed(kPercent * common.reference, 4);
+  out.text(" %, gains ").fixed(kPercent * common.gain, 4).text(" %, mounting ");
+  out.fixed(kPercent * common.mounting, 4).text(" %, drift ");
+  if (magnitude(sweep.check_before()) > 0.0 && magnitude(sweep.check_after()) > 0.0) {
+    out.fixed(kPercent * common.drift, 4).text(" %").line();
+  } else {
+    out.text("not known").line();
+  }
+  out.indent().text("together ").fixed(kPercent * common.total, 4).text(" %; expanded (k = 2) ");
+  out.general(kCoverageFactor * kPercent * common.total, 6).text(" %").line();
+}
+
+// The table of points with their budgets
+
+struct Column {
+  std::size_t width;
+  const char* name;
+  const char* unit;
+};
+
+constexpr Column kFrequency = {10, "f", "Hz"};
+constexpr Column kAmplitude = {12, "A", "V/(m/s^2)"};
+constexpr Column kAmplitudePerG = {12, "A", "V/g"};
+constexpr Column kRest[] = {{10, "phase", "deg"}, {9, "noise", "%"},      {9, "quant.", "%"},
+                            {9, "hum", "%"},      {10, "distort.", "%"},  {9, "u(phase)", "deg"},
+                            {9, "U(A)", "%"},     {11, "U(phase)", "deg"}};
+
+void write_budget_head(const char* const Column::*words, ReportWriter& out) noexcept {
+  out.part(ReportPart::kHead);
+  out.cell(kFrequency.width).text(kFrequency.*words);
+  out.cell(kAmplitude.width).text(kAmplitude.*words);
+  if (out.in_g()) {
+    out.cell(kAmplitudePerG.width).text(kAmplitudePerG.*words);
+  }
+  for (const Column& column : kRest) {
+    out.cell(column.width).text(column.*words);
+  }
+  out.line();
+}
+
+void write_budget_row(const SweepPoint& point, const CommonBudget& common, int decimals,
+                      ReportWriter& out) noexcept {
+  const ResponsePoint& response = point.point;
+  const PointBudget& budget = point.budget;
+  out.part(ReportPart::kLine);
+  out.cell(0).text(point.flagged ? " *" : "  ").right(8).general(response.frequency_hz, 7);
+  out.cell(12).fixed(response.amplitude, decimals);
+  if (out.in_g()) {
+    // A factor of ten nearly: one decimal less has the same digits.
+    const int less = decimals > 0 ? decimals - 1 : 0;
+    out.cell(12).fixed(kStandardGravity_mps2 * response.amplitude, less);
+  }
+  out.cell(10).fixed(kDegreesPerRadian * response.phase_rad, 3);
+  out.cell(9).fixed(kPercent * budget.noise, 4);
+  out.cell(9).fixed(kPercent * budget.quantisation, 4);
+  out.cell(9).fixed(kPercent * budget.hum, 4);
+  out.cell(10).fixed(kPercent * budget.distortion, 4);
+  out.cell(9).fixed(kDegreesPerRadian * budget.phase_rad, 4);
+  out.cell(9).fixed(kCoverageFactor * kPercent * total_u(point, common) / response.amplitude, 4);
+  out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
+}
+
+void write_budget(const Sweep& sweep, ReportWriter& out) noexcept {
+  const Span<const SweepPoint> points = sweep.points();
+  if (points.empty()) {
+    return;
+  }
+  out.part(ReportPart::kText)
+      .text(
+          "\n  Uncertainty budget in the manner of ISO 16063-21: standard uncertainties of each "
+          "point by\n"
+          "  itself, then the expanded ones (k = 2), U(A) with what is common to all points.\n\n");
+  out.part(ReportPart::kTable);
+  write_budget_head(&Column::name, out);
+  write_budget_head(&Column::unit, out);
+  double least_u = total_u(points[0], sweep.common());
+  for (const SweepPoint& point : points) {
+    const double u = total_u(point, sweep.common());
+    least_u = u < least_u ? u : least_u;
+  }
+  const int decimals = decimals_for(least_u);
+  for (const SweepPoint& point : points) {
+    write_budget_row(point, sweep.common(), decimals, out);
+  }
+}
+
+void write_fault(const Sweep& sweep, const Evaluation* refused, ReportWriter& out) noexcept {
+  out.heading(ReportSection::kFault, "FAULT");
+  if (sweep.status() == Status::kOk) {
+    out.label("identification").text("the points lead to no result").line();
+    wrap(out, refused->failure().reason);
+    return;
+  }
+  out.label(name_of_fault(sweep.status()));
+  if (sweep.failed_frequency_hz() > 0.0) {
+    out.text("at ").general(sweep.failed_frequency_hz(), 7).text(" Hz");
+  } else {
+    out.text("before the first frequency, with the drive at zero");
+  }
+  out.line();
+  wrap(out, explain(sweep.status()));
+}
+
+}  // namespace
+
+const char* name_of_fault(Status status) noexcept {
+  switch (status) {
+    case Status::kLostBlock:
+      return "lost block";
+    case Status::kLateBlock:
+      return "late block";
+    case Status::kHardwareFault:
+      return "hardware fault";
+    case Status::kSaturated:
+      return "saturated channel";
+    case Status::kStuckChannel:
+      return "stuck channel";
+    case Status::kNoReference:
+      return "no reference";
+    case Status::kNoDevice:
+      return "no device";
+    case Status::kWeakSignal:
+      return "weak signal";
+    case Status::kLevelNotReached:
+      return "level not reached";
+    case Status::kSwappedChannels:
+      return "swapped channels";
+    case Status::kInvertedPolarity:
+      return "inverted polarity";
+    case Status::kDistorted:
+      return "distorted response";
+    case Status::kDcDrift:
+      return "DC drift";
+    case Status::kStopped:
+      return "stopped";
+    case Status::kOk:
+    case Status::kNotProven:
+    case Status::kNothingStored:
+    case Status::kUnknownRecord:
+    case Status::kInvalidArgument:
+    case Status::kOverdamped:
+    case Status::kInvalidOrder:
+    case Status::kTooFewPoints:
+    case Status::kTooManyPoints:
+    case Status::kNotAscending:
+    case Status::kUncertaintyNotPositive:
+    case Status::kNotIdentifiable:
+    case Status::kNotPhysical:
+    case Status::kTooManySwitches:
+    case Status::kTooManyCells:
+    case Status::kTooFewTrials:
+    case Status::kBufferTooSmall:
+    case Status::kSyntax:
+    case Status::kNotRunning:
+    case Status::kAlreadyRunning:
+    case Status::kDriveLimit:
+      break;
+  }
+  return "failed measurement";
+}
+
+void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept {
+  const Sweep& sweep = measurement.sweep;
+  out.heading(ReportSection::kMeasurement,
+              "MEASUREMENT (stepped sine, back to back with the reference sensor)");
+  write_settings(measurement, out);
+  write_chain(sweep.settings(), out);
+  write_silence(sweep, out);
+  write_check(sweep, out);
+  out.label("Points measured").integer(sweep.points().size()).text(" of ");
+  out.integer(sweep.settings().frequency_count).line();
+  write_flagged(sweep, out);
+  write_common(sweep, out);
+  write_budget(sweep, out);
+}
+
+void write_measurement(const ReportContext& context, const Evaluation* refused, TextWriter& out,
+                       ReportMarkup* markup) noexcept {
+  ReportWriter writer(out, context.in_g, markup);
+  write_title(context.labels, writer);
+  writer.part(ReportPart::kWarning)
+      .text("NOT COMPLETE: a fault has ended the work, so there is no maximum energy.\n");
+  write_fault(context.measurement->sweep, refused, writer);
+  write_measurement_section(*context.measurement, writer);
+}
+
+}  // namespace emax::app

@@ -1,0 +1,659 @@
+// The report as text.
+#include "emax/app/report/report.hpp"
+
+#include <limits>
+
+#include "emax/base/elementary.hpp"
+
+#include "report_parts.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kLargeResidual = 3.0;
+constexpr std::size_t kResidualsShown = 10;
+constexpr std::size_t kFrequencyWidth = 2 + kLabelWidth + 13;
+constexpr std::size_t kTraceShown = 12;
+constexpr std::size_t kTimesPerLine = 6;
+constexpr double kLeastCorrelationShown = 0.0005;  // Less would be -0.000.
+// Below it the energies leave a line by 4 % of their range or more.
+constexpr double kLeastTrendCorrelation = 0.999;
+constexpr double kQuantile99 = 2.326347874040841;  // Of N(0, 1) at 99 %.
+constexpr double kMilli = 1e3;
+constexpr double kMicro = 1e6;
+constexpr double kPercent = 100.0;
+
+const char* const kParameterNames[] = {"S", "f0", "beta"};
+const char* const kParameterUnits[] = {"V/(m/s^2)", "Hz", "1"};
+
+double square(double x) noexcept { return x * x; }
+
+/// The value that a chi-square of `dof` degrees of freedom over `dof` stays below with the
+/// probability of the normal quantile `z`; Wilson and Hilferty.
+double reduced_chi_square_quantile(std::size_t dof, double z) noexcept {
+  if (dof == 0) {
+    return 0.0;
+  }
+  const double variance = 2.0 / (9.0 * static_cast<double>(dof));
+  const double root = 1.0 - variance + z * sqrt(variance);
+  return root > 0.0 ? root * root * root : 0.0;
+}
+
+// What was put in
+
+void write_source(const Evaluation& evaluation, const ReportContext& context,
+                  ReportWriter& out) noexcept {
+  out.label("Device");
+  if (evaluation.source() == Source::kModel) {
+    out.text("parameters as given").line();
+    const Accelerometer& device = evaluation.device().estimate;
+    const ParameterBox& u = evaluation.device().u;
+    out.indent().text("S = ").exact(device.sensitivity).text(" V/(m/s^2)");
+    out.and_v_per_g(device.sensitivity, 7).text(", standard u = ").exact(u.sensitivity);
+    out.and_v_per_g(u.sensitivity, 3).line();
+    out.indent().text("f0 = ").exact(device.natural_frequency_hz).text(" Hz, standard u = ");
+    out.exact(u.natural_frequency_hz).line();
+    out.indent()
+        .text("beta = ")
+        .exact(device.damping)
+        .text(", standard u = ")
+        .exact(u.damping)
+        .line();
+    return;
+  }
+  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  if (context.measurement != nullptr) {
+    const bool is_simulated = context.measurement->simulated != nullptr;
+    out.text("measured on the ").text(is_simulated ? "simulated " : "").text("bench").line();
+  } else {
+    out.text("measured points");
+    if (context.source_name != nullptr) {
+      out.text(": ");
+      out.quote(context.source_name);
+    }
+    out.line();
+  }
+  out.indent().integer(points.size()).text(" points from ").exact(points[0].frequency_hz);
+  out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
+}
+
+void write_filter(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const Settings& settings = evaluation.settings();
+  const Butterworth& filter = evaluation.model().filter();
+  out.label("Reference filter").text("Butterworth low-pass, order ");
+  out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
+  out.exact(filter.cutoff_hz).text(" Hz").line();
+  out.label("Filter gain").general(filter.gain, 7).text(" V/(m/s^2)");
+  out.and_v_per_g(filter.gain, 7).text(", ");
+  switch (settings.gain_mode) {
+    case GainMode::kAuto:
+      out.text("the estimate of S, the same in every trial");
+      break;
+    case GainMode::kFixed:
+      out.text("as given, the same in every trial");
+      break;
+    case GainMode::kTrack:
+      out.text("the estimate of S; in each trial that trial's S");
+      break;
+  }
+  out.line();
+}
+
+void write_method(const Settings& settings, ReportWriter& out) noexcept {
+  out.label("Criterion");
+  if (settings.criterion == Criterion::kIntegralSquareError) {
+    out.text("integral-square error: energy of sensor minus filter, equation (15)");
+  } else {
+    out.text("energy difference: E(sensor) minus E(filter), equations (5), (13)");
+  }
+  out.line();
+  out.label("Method");
+  if (settings.method == Method::kBest) {
+    out.text("best: many starts, fixed point and pulses, the best refined").line();
+    return;
+  }
+  out.text("paper: fixed point from the first column of Phi, step ");
+  out.general(kMicro * settings.step_s, 10).text(" us, J = ").integer(settings.iterations).line();
+}
+
+void write_random_numbers(const Settings& settings, ReportWriter& out) noexcept {
+  out.label("Random numbers").text("Wichmann-Hill ");
+  const bool is_2006 = settings.generator == Generator::k2006;
+  out.text(is_2006 ? "2006" : "1982").text(", seed ");
+  const std::size_t count = is_2006 ? 4 : 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.text(i == 0 ? "" : ",").integer(settings.seed[i]);
+  }
+  out.line();
+}
+
+void write_input(const Evaluation& evaluation, const ReportContext& context,
+                 ReportWriter& out) noexcept {
+  const Settings& settings = evaluation.settings();
+  out.heading(ReportSection::kInput, "WHAT WAS PUT IN");
+  write_source(evaluation, context, out);
+  write_filter(evaluation, out);
+  out.label("Time T").general(kMilli * settings.duration_s, 10).text(" ms").line();
+  out.label("Limit a").general(evaluation.limit_mps2(), 7).text(" m/s^2");
+  out.and_g(evaluation.limit_mps2(), 7);
+  out.text(settings.limit_is_auto ? ", the number of S" : ", as given").line();
+  write_method(settings, out);
+  write_random_numbers(settings, out);
+}
+
+// Fit
+
+double estimate_of(const Accelerometer& device, std::size_t parameter) noexcept {
+  const double values[] = {device.sensitivity, device.natural_frequency_hz, device.damping};
+  return values[parameter];
+}
+
+struct Estimate {
+  const char* name;
+  const char* unit;
+  double value;
+  double u;
+  double u_by_draws;
+};
+
+void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
+  const int decimals = decimals_for(estimate.u);
+  out.part(ReportPart::kLine);
+  out.cell(0).text("  ").left(11).text(estimate.name);
+  out.cell(15).fixed(estimate.value, decimals);
+  out.cell(15).fixed(estimate.u, decimals);
+  out.cell(15).fixed(estimate.u_by_draws, decimals);
+  out.cell(15).fixed(kCoverageFactor * estimate.u, decimals);
+  out.cell(0).text("  ").text(estimate.unit).line();
+}
+
+void write_estimates(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const WlspDrawsResult draws = evaluation.fit_draws();
+  out.part(ReportPart::kTable);
+  out.part(ReportPart::kHead);
+  out.cell(0).text("  ").left(11).text("parameter");
+  out.cell(15).text("estimate");
+  out.cell(15).text("u");
+  out.cell(15).text("u by draws");
+  out.cell(15).text("U (k = 2)");
+  out.cell(0).text("  unit").line();
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    const Estimate estimate = {kParameterNames[i], kParameterUnits[i],
+                               estimate_of(evaluation.device().estimate, i),
+                               sqrt(evaluation.covariance(i, i)), sqrt(draws.covariance[i][i])};
+    write_estimate(estimate, out);
+    if (i == 0 && out.in_g()) {
+      constexpr double kG = kStandardGravity_mps2;
+      write_estimate(
+          {estimate.name, "V/g", kG * estimate.value, kG * estimate.u, kG * estimate.u_by_draws},
+          out);
+    }
+  }
+  out.part(ReportPart::kText);
+  out.text("  u: standard uncertainty from the stated ones, by formula and by ");
+  out.integer(draws.draws).text(" Monte Carlo draws");
+  if (draws.discarded > 0) {
+    out.text(" (").integer(draws.discarded).text(" more gave no device)");
+  }
+  if (evaluation.fit().response().has_common()) {
+    out.text(",\n  both with the part that is common to all points");
+  }
+  out.line();
+}
+
+void write_truth(const Evaluation& evaluation, const Accelerometer& truth,
+                 ReportWriter& out) noexcept {
+  out.label("Truth of the bench").text("S = ").exact(truth.sensitivity).text(" V/(m/s^2)");
+  out.and_v_per_g(truth.sensitivity, 7)
+      .text(", f0 = ")
+      .exact(truth.natural_frequency_hz)
+      .text(" Hz, beta = ");
+  out.exact(truth.damping).line();
+  out.indent().text("the estimates are off by");
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    const double off = estimate_of(evaluation.device().estimate, i) - estimate_of(truth, i);
+    out.text(i == 0 ? " " : i == 1 ? ", " : " and ");
+    out.fixed(off / sqrt(evaluation.covariance(i, i)), 2);
+  }
+  out.text(" u").line();
+}
+
+void write_common_part(const Wlsp& fit, ReportWriter& out) noexcept {
+  if (!fit.response().has_common()) {
+    return;
+  }
+  out.label("Common part").fixed(kPercent * fit.response().common()[0], 4);
+  out.text(" % of every amplitude (standard u), one effect for all points").line();
+}
+
+void write_correlations(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  out.label("Correlation");
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    for (std::size_t j = i + 1; j < kWlspParameters; ++j) {
+      const double scale = sqrt(evaluation.covariance(i, i) * evaluation.covariance(j, j));
+      const double r = evaluation.covariance(i, j) / scale;
+      out.text(i + j == 1 ? "" : ", ").text("r(").text(kParameterNames[i]).text(",");
+      out.text(kParameterNames[j]).text(") = ").fixed(abs(r) < kLeastCorrelationShown ? 0.0 : r, 3);
+    }
+  }
+  out.line();
+}
+
+void write_fit_warning(const WlspFit& fit, ReportWriter& out) noexcept {
+  const double reduced = fit.chi2 / fit.dof;
+  const double limit = reduced_chi_square_limit(fit.dof);
+  if (reduced > limit) {
+    out.line();
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: chi2/dof = ")
+        .general(reduced, 4)
+        .text(" is above ");
+    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
+    out.text(
+        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
+        "  these frequencies, or the stated uncertainties are too small. The standard\n"
+        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
+        "  then too small by about the Birge ratio of ");
+    out.general(fit.birge_ratio, 3).text(".\n");
+    out.text(
+        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
+        "  channels (a phase that grows with frequency), and that the table's uncertainties are\n"
+        "  expanded ones (k = 2).\n");
+    return;
+  }
+  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
+  if (reduced < low) {
+    out.line();
+    out.part(ReportPart::kNote).text("  Note: chi2/dof is below ").general(low, 3);
+    out.text(
+        ", which one fit in a hundred undercuts: the points scatter\n"
+        "  less than the stated uncertainties say. These may be too large.\n");
+  }
+}
+
+double size_of(Complex residual) noexcept {
+  const double re = abs(residual.re);
+  const double im = abs(residual.im);
+  return re > im ? re : im;
+}
+
+/// The point with the largest residual among those after (`before`, `index`) in the order of size,
+/// equal ones in the order of frequency; the number of points if there is none.
+std::size_t next_largest(const Wlsp& fit, double before, std::size_t index) noexcept {
+  const std::size_t count = fit.response().size();
+  std::size_t next = count;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double size = size_of(fit.normalised_residual(i));
+    const bool is_after = size < before || (size == before && i > index);
+    if (is_after && size > largest) {
+      largest = size;
+      next = i;
+    }
+  }
+  return next;
+}
+
+void write_large_residuals(const Wlsp& fit, ReportWriter& out) noexcept {
+  const Span<const ResponsePoint> points = fit.response().points();
+  std::size_t large = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    large += size_of(fit.normalised_residual(i)) > kLargeResidual ? 1u : 0u;
+  }
+  out.line();
+  out.label("Large residuals").integer(large).text(" of ").integer(points.size());
+  out.text(" points are beyond 3 (normalised, of 1/K)");
+  const std::size_t shown = large < kResidualsShown ? large : kResidualsShown;
+  if (shown < large) {
+    out.text("; the ").integer(shown).text(" largest:");
+  }
+  out.line();
+  if (large == 0) {
+    return;
+  }
+  out.part(ReportPart::kTable);
+  out.part(ReportPart::kHead);
+  out.cell(kFrequencyWidth).text("frequency/Hz");
+  out.cell(12).text("real");
+  out.cell(12).text("imaginary").line();
+  double before = std::numeric_limits<double>::infinity();
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < shown; ++i) {
+    index = next_largest(fit, before, index);
+    const Complex residual = fit.normalised_residual(index);
+    before = size_of(residual);
+    out.part(ReportPart::kLine);
+    out.cell(kFrequencyWidth).general(points[index].frequency_hz, 7);
+    out.cell(12).fixed(residual.re, 1);
+    out.cell(12).fixed(residual.im, 1).line();
+  }
+}
+
+void write_fit(const Evaluation& evaluation, const Measurement* measurement,
+               ReportWriter& out) noexcept {
+  const WlspFit& fit = evaluation.fit().result();
+  out.heading(ReportSection::kFit, "FIT");
+  out.part(ReportPart::kText);
+  out.text("  S, f0 and beta by weighted least squares on 1/K, two equations for each point.\n\n");
+  write_estimates(evaluation, out);
+  out.line();
+  if (measurement != nullptr && measurement->simulated != nullptr) {
+    write_truth(evaluation, measurement->simulated->truth, out);
+  }
+  write_common_part(evaluation.fit(), out);
+  out.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
+  out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
+  out.label("Birge ratio").general(fit.birge_ratio, 4);
+  out.text(" (1 where model and uncertainties hold)").line();
+  write_correlations(evaluation, out);
+  write_fit_warning(fit, out);
+  write_large_residuals(evaluation.fit(), out);
+}
+
+// Error system
+
+void write_error_system(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const double duration_s = evaluation.settings().duration_s;
+  const Peak peak = evaluation.peak();
+  const SettlingTime settling = evaluation.settling_time();
+  out.heading(ReportSection::kErrorSystem,
+              "ERROR SYSTEM (impulse response k = sensor minus filter)");
+  out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
+  out.fixed(kMicro * peak.time_s, 2).text(" us").line();
+  out.label("5 % settling time");
+  if (!settling.found) {
+    out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
+    return;
+  }
+  out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
+  if (duration_s < settling.time_s) {
+    out.part(ReportPart::kNote)
+        .text(
+            "  Note: T is shorter than the settling time, so the error has not developed within "
+            "T.\n"
+            "  The paper takes T from the settling time; give a longer T to compare devices.\n");
+  }
+}
+
+// Maximum energy
+
+void write_switching_times(const SwitchingSignal& signal, ReportWriter& out) noexcept {
+  const Span<const double> times_s = signal.times_s();
+  out.label("Signal").text("+a from the start, ").integer(times_s.size());
+  out.text(times_s.size() == 1 ? " switch" : " switches");
+  out.text(times_s.empty() ? "" : ", at (ms)");
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    if (i % kTimesPerLine == 0) {
+      out.line();
+      out.indent();
+    }
+    out.right(11).fixed(kMilli * times_s[i], 6);
+  }
+  out.line();
+}
+
+void write_trace(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const Span<const double> trace = evaluation.trace();
+  const double a2 = square(evaluation.limit_mps2());
+  const std::size_t shown = trace.size() < kTraceShown ? trace.size() : kTraceShown;
+  out.label("E_0, E_1, ... (V^2 s)");
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0 && i % 4 == 0) {
+      out.line();
+      out.indent();
+    }
+    out.right(16).scientific(a2 * trace[i], 8);
+  }
+  out.text(shown < trace.size() ? " ..." : "").line();
+}
+
+void write_how_found(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const MaximumEnergy& maximum = evaluation.maximum();
+  const Settings& settings = evaluation.settings();
+  const double cell_s = settings.duration_s / static_cast<double>(maximum.cells);
+  out.label("Found on").integer(maximum.cells).text(" cells of ");
+  out.general(kMicro * cell_s, 5).text(" us");
+  if (settings.method == Method::kPaper) {
+    out.text(maximum.at_rest ? ", at rest after " : ", not yet at rest after ");
+    out.integer(maximum.iterations).text(" iterations").line();
+    write_trace(evaluation, out);
+    return;
+  }
+  out.text(", the best of ").integer(maximum.starts).text(" starts, after ");
+  out.integer(maximum.iterations).text(" iterations").line();
+}
+
+void write_bound(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  out.label("Upper bound");
+  if (!evaluation.has_bound()) {
+    out.text("none passed its check for this device and time").line();
+    return;
+  }
+  const double energy = evaluation.energy_v2s();
+  const double bound = evaluation.bound_v2s();
+  out.scientific(bound, 8)
+      .text(" V^2 s: proven, no signal of any shape within +-a has more")
+      .line();
+  if (energy > 0.0) {
+    out.label("Gap").general(kPercent * (bound - energy) / energy, 4);
+    out.text(" % of E; the true maximum lies between the two").line();
+  }
+}
+
+void write_energy(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const double energy = evaluation.energy_v2s();
+  out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
+  out.label("E").scientific(energy, 8).text(" V^2 s = ").general(kMilli * energy, 5);
+  out.text(" mV^2 s (the paper prints \"mV m^2\")").line();
+  out.label("xi = E/(a^2 T)").general(evaluation.xi(), 7).text(" (V/(m/s^2))^2");
+  if (out.in_g()) {
+    out.text(" (").general(square(kStandardGravity_mps2) * evaluation.xi(), 7).text(" (V/g)^2)");
+  }
+  out.line();
+  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  out.label(is_ise ? "rms error sqrt(E/T)" : "sqrt(E/T)");
+  if (energy >= 0.0) {
+    const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
+    const double rms = evaluation.rms_error_v();
+    out.general(rms, 5).text(" V = ").general(kPercent * rms / full, 4).text(" % of S a").line();
+  } else {
+    out.text("none, the energy difference is negative").line();
+  }
+  write_switching_times(evaluation.maximum().signal, out);
+  write_how_found(evaluation, out);
+  if (evaluation.settings().method == Method::kBest) {
+    out.part(ReportPart::kText).text("  The best signal found.\n");
+  } else {
+    out.part(ReportPart::kText)
+        .text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
+  }
+  write_bound(evaluation, out);
+  out.label("Largest |y|");
+  if (evaluation.has_absolute_error()) {
+    out.general(evaluation.absolute_error_v(), 7);
+    out.text(" V, by another signal: a times the integral of |k|").line();
+  } else {
+    out.text("not computed: k moves too often for so long a T").line();
+  }
+}
+
+// Monte Carlo
+
+void write_interval(ReportWriter& out, const char* name, double probability,
+                    const CoverageInterval& interval) noexcept {
+  out.label(name).scientific(interval.low, 7).text(" to ").scientific(interval.high, 7);
+  out.text(" V^2 s (").general(kPercent * probability, 6).text(" %)").line();
+}
+
+void write_adaptive(const AdaptiveResult& adaptive, ReportWriter& out) noexcept {
+  out.label("Adaptive, JCGM 101 7.9");
+  out.text(adaptive.stabilised ? "stable" : "NOT stable").text(" after ");
+  out.integer(adaptive.blocks).text(" blocks, tolerance ").general(adaptive.tolerance, 2);
+  out.text(" V^2 s").line();
+  if (!adaptive.stabilised) {
+    out.part(ReportPart::kWarning)
+        .text(
+            "  WARNING: the results were not yet stable when the greatest number of blocks was\n"
+            "  reached; their last digits are uncertain.\n");
+  }
+}
+
+void write_trials(const Evaluation& evaluation, const MonteCarloResult& result,
+                  ReportWriter& out) noexcept {
+  const std::uint32_t rule = minimum_trials(result.probability);
+  out.label("Trials").integer(result.trials);
+  if (rule > 0) {
+    out.text("; rule (3), 1e4/(1 - p), asks for ").integer(rule);
+  }
+  out.line();
+  if (evaluation.settings().adaptive) {
+    write_adaptive(evaluation.adaptive(), out);
+    return;
+  }
+  if (rule == 0 || result.trials < rule) {
+    out.part(ReportPart::kWarning)
+        .text(
+            "  WARNING: fewer trials than rule (3) asks for; the intervals and the maximum are\n"
+            "  less certain than their digits say.\n");
+  }
+}
+
+void write_maximum(const Evaluation& evaluation, const MonteCarloResult& result,
+                   ReportWriter& out) noexcept {
+  const Accelerometer at = evaluation.device_at_maximum();
+  out.label("E_max").scientific(result.maximum, 8).text(" V^2 s in trial ");
+  out.integer(result.trial_of_maximum).text(" (the first is 0), with").line();
+  out.indent().text("S = ").general(at.sensitivity, 8).text(" V/(m/s^2)");
+  out.and_v_per_g(at.sensitivity, 8)
+      .text(", f0 = ")
+      .general(at.natural_frequency_hz, 8)
+      .text(" Hz, beta = ")
+      .general(at.damping, 8)
+      .line();
+}
+
+void write_guard(const EnergyGuard& guard, ReportWriter& out) noexcept {
+  if (guard.searches() == 0) {
+    return;
+  }
+  out.label("Guard").integer(guard.searches()).text(" full searches, ");
+  out.integer(guard.disagreements());
+  out.text(guard.disagreements() == 1 ? " disagreement" : " disagreements").line();
+  if (guard.disagreements() > 0) {
+    out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
+    out.general(kPercent * guard.largest_excess(), 3)
+        .text(
+            " % more energy with another signal than\n"
+            "  the best one at the estimates. Maximum and intervals are too low; the parameters' "
+            "ranges\n"
+            "  are too wide for one signal, or two signals are nearly equal.\n");
+  }
+}
+
+void write_monte_carlo(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const bool is_box = evaluation.settings().distribution == Distribution::kBox;
+  out.heading(ReportSection::kMonteCarlo,
+              is_box ? "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))"
+                     : "MONTE CARLO (S, f0 and beta jointly normal, with their covariance)");
+  if (!evaluation.has_monte_carlo()) {
+    out.part(ReportPart::kText).text("  Not run: all uncertainties are zero.\n");
+    return;
+  }
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  write_trials(evaluation, result, out);
+  if (evaluation.trial_scale() > 1.0) {
+    out.label("Uncertainties").text("times the Birge ratio, ");
+    out.general(evaluation.trial_scale(), 4).line();
+  }
+  write_maximum(evaluation, result, out);
+  out.label("Mean of E").scientific(result.mean, 8).text(" V^2 s").line();
+  out.label("u(E)").scientific(result.u, 2).text(" V^2 s, the standard deviation of the trials");
+  out.line();
+  write_interval(out, "Symmetric interval", result.probability, result.symmetric);
+  write_interval(out, "Shortest interval", result.probability, result.shortest);
+  write_guard(evaluation.guard(), out);
+}
+
+// Trend
+
+void write_trend(const Evaluation& evaluation, ReportWriter& out) noexcept {
+  const Span<const TrendPoint> points = evaluation.trend_points();
+  out.heading(ReportSection::kTrend, "TREND (maximum energy at the estimates against T)");
+  if (points.empty()) {
+    out.part(ReportPart::kText).text("  Not asked for.\n");
+    return;
+  }
+  const Trend& trend = evaluation.trend();
+  const double a2 = square(evaluation.limit_mps2());
+  out.part(ReportPart::kTable);
+  out.part(ReportPart::kHead);
+  out.cell(12).text("T/ms");
+  out.cell(20).text("E/(V^2 s)");
+  out.cell(20).text("line/(V^2 s)").line();
+  for (const TrendPoint& point : points) {
+    out.part(ReportPart::kLine);
+    out.cell(12).general(kMilli * point.duration_s, 8);
+    out.cell(20).scientific(a2 * point.energy, 8);
+    out.cell(20).scientific(trend.slope * point.duration_s + trend.intercept, 8).line();
+  }
+  out.label("Line").text("E = ").general(trend.slope, 7).text(" V^2 * T ");
+  out.text(trend.intercept < 0.0 ? "- " : "+ ").general(abs(trend.intercept), 7).text(" V^2 s");
+  out.line();
+  out.label("Correlation").fixed(trend.correlation, 7).line();
+  if (abs(trend.correlation) < kLeastTrendCorrelation) {
+    out.part(ReportPart::kNote)
+        .text("  Note: E is not linear in T here; the line says nothing about other lengths.\n");
+  }
+}
+
+}  // namespace
+
+double reduced_chi_square_limit(std::size_t dof) noexcept {
+  return reduced_chi_square_quantile(dof, kQuantile99);
+}
+
+void write_report(const Evaluation& evaluation, const ReportContext& context, TextWriter& out,
+                  ReportMarkup* markup) noexcept {
+  ReportWriter writer(out, context.in_g, markup);
+  write_title(context.labels, writer);
+  write_input(evaluation, context, writer);
+  if (context.measurement != nullptr) {
+    write_measurement_section(*context.measurement, writer);
+  }
+  if (evaluation.source() == Source::kPoints) {
+    write_fit(evaluation, context.measurement, writer);
+  }
+  write_error_system(evaluation, writer);
+  write_energy(evaluation, writer);
+  write_monte_carlo(evaluation, writer);
+  write_trend(evaluation, writer);
+}
+
+void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept {
+  const Failure& failure = evaluation.failure();
+  if (failure.reason == nullptr) {
+    return;
+  }
+  out.text(failure.reason);
+  if (failure.duration_s > 0.0) {
+    out.text(" (T = ").general(failure.duration_s, 10).text(" s)");
+  }
+  if (failure.status == Status::kTooManyCells && failure.stage == Stage::kMonteCarlo) {
+    out.text(" (The room is for ").integer(GridWorkspace::kMaxTrialCells).text(" cells.)");
+  }
+  if (failure.stage != Stage::kFitDraws) {
+    return;
+  }
+  const WlspFit& fit = evaluation.fit().result();
+  if (failure.status == Status::kInvertedPolarity) {
+    out.text(" (The fit gives S = ").general(fit.model.sensitivity, 5).text(" V/(m/s^2).)");
+  } else if (failure.status == Status::kOverdamped) {
+    out.text(" (The fit gives beta = ").general(fit.model.damping, 5).text(".)");
+  } else if (failure.status == Status::kNotPhysical) {
+    out.text(" (The fit gives mu1 = ").general(fit.mu[0], 5).text(", mu2 = ");
+    out.general(fit.mu[1], 5).text(", mu3 = ").general(fit.mu[2], 5);
+    out.text("; all must be above 0.)");
+  }
+}
+
+}  // namespace emax::app

@@ -1,0 +1,341 @@
+// results.json.
+#include "emax/app/base/json_writer.hpp"
+#include "emax/app/base/version.hpp"
+#include "emax/app/report/report.hpp"
+#include "emax/base/elementary.hpp"
+
+#include "report_parts.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+const char* source_of(const Evaluation& evaluation, const Measurement* measurement) noexcept {
+  if (measurement != nullptr) {
+    return "bench";
+  }
+  return evaluation.source() == Source::kPoints ? "points" : "model";
+}
+
+void write_model(const Evaluation& evaluation, const ReportContext& context,
+                 JsonWriter& json) noexcept {
+  const Device& device = evaluation.device();
+  const bool is_fit = evaluation.source() == Source::kPoints;
+  json.open("model");
+  json.number("S", device.estimate.sensitivity);
+  json.number("f0", device.estimate.natural_frequency_hz);
+  json.number("beta", device.estimate.damping);
+  json.number("uS", device.u.sensitivity);
+  json.number("uf0", device.u.natural_frequency_hz);
+  json.number("ubeta", device.u.damping);
+  json.open("covariance", '[');
+  for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    json.open_row(nullptr);
+    for (std::size_t j = 0; j < kWlspParameters; ++j) {
+      json.number(nullptr, evaluation.covariance(i, j));
+    }
+    json.close_row();
+  }
+  json.close(']');
+  if (is_fit) {
+    json.number("chi2", evaluation.fit().result().chi2);
+    json.integer("dof", evaluation.fit().result().dof);
+  } else {
+    json.null("chi2");
+    json.null("dof");
+  }
+  if (is_fit && evaluation.fit().response().has_common()) {
+    json.number("common_percent",
+                kCoverageFactor * kPercent * evaluation.fit().response().common()[0]);
+  } else {
+    json.null("common_percent");
+  }
+  json.words("source", source_of(evaluation, context.measurement));
+  if (context.source_name != nullptr) {
+    json.words("name", context.source_name);
+  } else {
+    json.null("name");
+  }
+  json.close();
+}
+
+// The bench
+
+void write_fault(const Sweep& sweep, const Evaluation* refused, JsonWriter& json) noexcept {
+  const bool is_sweep = sweep.status() != Status::kOk;
+  if (!is_sweep && refused == nullptr) {
+    json.null("fault");
+    return;
+  }
+  json.open("fault");
+  json.words("name", is_sweep ? name_of_fault(sweep.status()) : "identification");
+  if (is_sweep && sweep.failed_frequency_hz() > 0.0) {
+    json.number("frequency", sweep.failed_frequency_hz());
+  } else {
+    json.null("frequency");
+  }
+  json.words("advice", is_sweep ? explain(sweep.status()) : refused->failure().reason);
+  json.close();
+}
+
+void write_simulated(const SimulatedBench* simulated, JsonWriter& json) noexcept {
+  if (simulated == nullptr) {
+    json.null("seed");
+    json.null("truth");
+    return;
+  }
+  json.integer("seed", simulated->seed);
+  json.open("truth");
+  json.number("S", simulated->truth.sensitivity);
+  json.number("f0", simulated->truth.natural_frequency_hz);
+  json.number("beta", simulated->truth.damping);
+  json.close();
+}
+
+void write_number_or_null(const char* name, bool exists, double value, JsonWriter& json) noexcept {
+  if (exists) {
+    json.number(name, value);
+  } else {
+    json.null(name);
+  }
+}
+
+void write_common(const Sweep& sweep, JsonWriter& json) noexcept {
+  const double before = sqrt(norm(sweep.check_before()));
+  const double after = sqrt(norm(sweep.check_after()));
+  json.open("check");
+  json.number("frequency", sweep.settings().check_hz);
+  write_number_or_null("before", before > 0.0, before, json);
+  write_number_or_null("after", after > 0.0, after, json);
+  json.close();
+  const bool has_drift = before > 0.0 && after > 0.0;
+  write_number_or_null("drift_percent", has_drift,
+                       has_drift ? kPercent * (after / before - 1.0) : 0.0, json);
+  const CommonBudget& common = sweep.common();
+  json.open("common");
+  json.number("reference", common.reference);
+  json.number("gain", common.gain);
+  json.number("mounting", common.mounting);
+  write_number_or_null("drift", has_drift, common.drift, json);
+  json.number("total", common.total);
+  json.close();
+  json.number("common_percent", kCoverageFactor * kPercent * common.total);
+}
+
+void write_budget(const Sweep& sweep, JsonWriter& json) noexcept {
+  json.open_row("flagged");
+  for (const SweepPoint& point : sweep.points()) {
+    if (point.flagged) {
+      json.number(nullptr, point.point.frequency_hz);
+    }
+  }
+  json.close_row();
+  json.open("budget", '[');
+  for (const SweepPoint& point : sweep.points()) {
+    const double row[] = {point.point.frequency_hz,  point.budget.noise,
+                          point.budget.quantisation, point.budget.hum,
+                          point.budget.distortion,   point.budget.phase_rad};
+    json.open_row(nullptr);
+    for (const double value : row) {
+      json.number(nullptr, value);
+    }
+    json.close_row();
+  }
+  json.close(']');
+}
+
+void write_bench(const Measurement* measurement, const Evaluation* refused,
+                 JsonWriter& json) noexcept {
+  if (measurement == nullptr) {
+    json.null("bench");
+    return;
+  }
+  const Sweep& sweep = measurement->sweep;
+  const SweepSettings& settings = sweep.settings();
+  json.open("bench");
+  write_simulated(measurement->simulated, json);
+  write_fault(sweep, refused, json);
+  json.integer("points", sweep.points().size());
+  json.integer("frequencies", settings.frequency_count);
+  json.number("sample_rate", measurement->format.sample_rate_hz);
+  json.number("level", settings.level_mps2);
+  json.number("acceleration_limit", settings.limit_mps2);
+  json.number("drive_limit", settings.drive_limit_v);
+  json.number("slew", settings.slew_v_per_s);
+  json.number("reference_percent", settings.reference.expanded_percent);
+  json.number("skew", settings.skew_s);
+  write_common(sweep, json);
+  write_budget(sweep, json);
+  json.close();
+}
+
+const char* name_of(GainMode mode) noexcept {
+  if (mode == GainMode::kFixed) {
+    return "fixed";
+  }
+  return mode == GainMode::kTrack ? "track" : "auto";
+}
+
+void write_filter(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  const Butterworth& filter = evaluation.model().filter();
+  json.open("filter");
+  json.integer("order", static_cast<std::uint64_t>(filter.order));
+  json.number("cutoff", filter.cutoff_hz);
+  json.number("gain", filter.gain);
+  json.words("gain_mode", name_of(evaluation.settings().gain_mode));
+  json.close();
+}
+
+void write_impulse_response(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  const SettlingTime settling = evaluation.settling_time();
+  json.open("impulse_response");
+  json.number("peak", evaluation.peak().value);
+  json.number("peak_time_s", evaluation.peak().time_s);
+  if (settling.found) {
+    json.number("settling_time_s", settling.time_s);
+  } else {
+    json.null("settling_time_s");
+  }
+  json.close();
+}
+
+void write_energy(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  const Settings& settings = evaluation.settings();
+  const MaximumEnergy& maximum = evaluation.maximum();
+  const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
+  json.open("energy");
+  json.words("criterion", is_ise ? "ise" : "difference");
+  json.words("method", settings.method == Method::kBest ? "best" : "paper");
+  json.number("T", settings.duration_s);
+  json.number("a", evaluation.limit_mps2());
+  json.number("E", evaluation.energy_v2s());
+  json.number("xi", evaluation.xi());
+  json.number("rms", evaluation.rms_error_v());
+  if (evaluation.has_bound()) {
+    json.number("bound", evaluation.bound_v2s());
+  } else {
+    json.null("bound");
+  }
+  json.open_row("switch_times");
+  for (const double time_s : maximum.signal.times_s()) {
+    json.number(nullptr, time_s);
+  }
+  json.close_row();
+  json.integer("iterations", maximum.iterations);
+  if (evaluation.has_absolute_error()) {
+    json.number("absolute_error", evaluation.absolute_error_v());
+  } else {
+    json.null("absolute_error");
+  }
+  json.close();
+}
+
+void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  if (!evaluation.has_monte_carlo()) {
+    json.null("monte_carlo");
+    return;
+  }
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  const Accelerometer at = evaluation.device_at_maximum();
+  json.open("monte_carlo");
+  json.integer("trials", result.trials);
+  json.number("probability", result.probability);
+  json.words("distribution",
+             evaluation.settings().distribution == Distribution::kBox ? "box" : "normal");
+  json.open_row("seed");
+  for (const std::uint32_t seed : evaluation.settings().seed) {
+    json.integer(nullptr, seed);
+  }
+  json.close_row();
+  json.number("E_max", result.maximum);
+  json.open("at");
+  json.number("S", at.sensitivity);
+  json.number("f0", at.natural_frequency_hz);
+  json.number("beta", at.damping);
+  json.close();
+  json.integer("trial", result.trial_of_maximum);
+  json.number("mean", result.mean);
+  json.number("u", result.u);
+  json.pair("interval", result.symmetric.low, result.symmetric.high);
+  json.pair("shortest", result.shortest.low, result.shortest.high);
+  if (evaluation.guard().searches() > 0) {
+    json.integer("disagreements", evaluation.guard().disagreements());
+  } else {
+    json.null("disagreements");
+  }
+  json.close();
+}
+
+void write_trend(const Evaluation& evaluation, JsonWriter& json) noexcept {
+  if (evaluation.trend_points().empty()) {
+    json.null("trend");
+    return;
+  }
+  const double a2 = evaluation.limit_mps2() * evaluation.limit_mps2();
+  json.open("trend");
+  json.number("slope", evaluation.trend().slope);
+  json.number("intercept", evaluation.trend().intercept);
+  json.open("points", '[');
+  for (const TrendPoint& point : evaluation.trend_points()) {
+    json.pair(nullptr, point.duration_s, a2 * point.energy);
+  }
+  json.close(']');
+  json.close();
+}
+
+void write_label(const char* name, const char* words, JsonWriter& json) noexcept {
+  if (words != nullptr) {
+    json.words(name, words);
+  } else {
+    json.null(name);
+  }
+}
+
+void write_head(const Labels& labels, JsonWriter& json) noexcept {
+  json.words("version", kVersion);
+  if (!labels.any()) {
+    return;
+  }
+  json.open("labels");
+  write_label("device", labels.device, json);
+  write_label("serial", labels.serial, json);
+  write_label("operator", labels.operated_by, json);
+  write_label("date", labels.date, json);
+  write_label("note", labels.note, json);
+  json.close();
+}
+
+}  // namespace
+
+void write_json(const Evaluation& evaluation, const ReportContext& context,
+                TextWriter& out) noexcept {
+  JsonWriter json(out);
+  json.open(nullptr);
+  write_head(context.labels, json);
+  write_model(evaluation, context, json);
+  write_bench(context.measurement, nullptr, json);
+  write_filter(evaluation, json);
+  write_impulse_response(evaluation, json);
+  write_energy(evaluation, json);
+  write_monte_carlo(evaluation, json);
+  write_trend(evaluation, json);
+  json.close();
+  out.line();
+}
+
+void write_measurement_json(const ReportContext& context, const Evaluation* refused,
+                            TextWriter& out) noexcept {
+  JsonWriter json(out);
+  json.open(nullptr);
+  write_head(context.labels, json);
+  json.null("model");
+  write_bench(context.measurement, refused, json);
+  for (const char* part : {"filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
+    json.null(part);
+  }
+  json.close();
+  out.line();
+}
+
+}  // namespace emax::app

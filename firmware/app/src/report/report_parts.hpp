@@ -1,0 +1,63 @@
+// What the parts of the report have in common: labels, columns, and the part on the measurement.
+#pragma once
+
+#include <cstddef>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report_context.hpp"
+
+namespace emax::app {
+
+inline constexpr double kCoverageFactor = 2.0;
+inline constexpr std::size_t kLabelWidth = 26;
+
+/// The words of a report, as text of its own or between the marks of somebody else.
+///
+/// What begins a part writes the part's beginning as text only where there are no marks; words and
+/// numbers are the same in both.
+class ReportWriter final : public TextWriter {
+ public:
+  /// @param[in] markup Null for text.
+  ReportWriter(const TextWriter& out, bool in_g, ReportMarkup* markup) noexcept
+      : TextWriter(out), markup_(markup), in_g_(in_g) {}
+
+  TextWriter& heading(ReportSection section, const char* words) noexcept;
+  TextWriter& label(const char* name) noexcept;
+  /// A further line below a label.
+  TextWriter& indent() noexcept;
+  /// Sentences, a table, or a line of it; as text they bring blanks and line feeds of their own.
+  TextWriter& part(ReportPart part) noexcept;
+  /// A cell of `width` characters.
+  TextWriter& cell(std::size_t width) noexcept;
+  /// Words that others wrote, in one line.
+  TextWriter& quote(const char* words) noexcept;
+
+  bool in_g() const noexcept { return in_g_; }
+  /// " (0.1057446 g)" behind an acceleration where that is asked for, else nothing.
+  TextWriter& and_g(double acceleration_mps2, int digits) noexcept;
+  /// " (10.16949 V/g)" behind a sensitivity.
+  TextWriter& and_v_per_g(double sensitivity, int digits) noexcept;
+
+ private:
+  ReportMarkup* markup_;
+  bool in_g_;
+};
+
+/// As many decimals as give `u` three significant digits.
+inline int decimals_for(double u) noexcept {
+  constexpr int kMaxDecimals = 12;
+  int decimals = 0;
+  for (double scaled = u; scaled < 99.95 && decimals < kMaxDecimals; scaled *= 10.0) {
+    ++decimals;
+  }
+  return decimals;
+}
+
+/// Title of the report, where its equations are from, and the labels.
+void write_title(const Labels& labels, ReportWriter& out) noexcept;
+
+/// The section on the measurement with its budget.
+void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept;
+
+}  // namespace emax::app

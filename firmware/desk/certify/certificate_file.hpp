@@ -1,0 +1,28 @@
+// The file that proves a bound, for whoever wants to check it.
+#pragma once
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/bound/energy_certificate.hpp"
+#include "emax/energy/switching_signal.hpp"
+#include "emax/model/modal_model.hpp"
+
+namespace emax::host {
+
+/// A bound with the signal that comes closest to it.
+struct ProvenEnergy {
+  const ModalModel* model = nullptr;
+  const EnergyCertificate* certificate = nullptr;
+  const SwitchingSignal* signal = nullptr;
+  double limit_mps2 = 0.0;
+  double energy_v2s = 0.0;  ///< Reached by the signal.
+
+  double bound_v2s() const noexcept { return limit_mps2 * limit_mps2 * certificate->bound(); }
+  double gap() const noexcept { return bound_v2s() / energy_v2s - 1.0; }
+};
+
+/// Writes the certificate as JSON: all that `host_tests/reference/check_certificate.py` reads.
+/// Costs, constant and unit are for a = 1; a multiplier is [i, j, k, kind, units], with kind 4 for
+/// a kind 3 of any sign.
+void write_certificate(const ProvenEnergy& proven, app::TextWriter& out) noexcept;
+
+}  // namespace emax::host

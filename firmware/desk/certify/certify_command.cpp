@@ -1,0 +1,453 @@
+// `emax certify`.
+#include "desk/certify/certify_command.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <unistd.h>
+#include <vector>
+
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/report/report.hpp"
+#include "emax/base/decimal.hpp"
+#include "emax/bound/energy_certificate.hpp"
+#include "emax/identify/frequency_response.hpp"
+
+#include "desk/certify/certificate_file.hpp"
+#include "desk/cli/console.hpp"
+#include "desk/cli/console_progress.hpp"
+#include "desk/cli/nearest.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/stop_request.hpp"
+#include "desk/files/points_file.hpp"
+#include "desk/files/rounding.hpp"
+#include "desk/files/text_file.hpp"
+
+namespace emax::host {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of the effort: what the multipliers get; the cases get the rest.
+constexpr double kMultipliersShare = 0.8;
+// How much longer they get after Ctrl-C, to come to rest.
+constexpr double kRest_s = 1.5;
+// Iterations that are worth a finer grid, and what one of them takes for each pair of cells.
+constexpr double kEnoughIterations = 12000.0;
+constexpr double kPair_s = 7e-9;
+// No finer than this many times the coarsest grid: roundings then cost less than the rest.
+constexpr double kFinest = 6.0;
+constexpr std::size_t kMultipliers = 200'000;
+constexpr std::size_t kHash = std::size_t{1} << 19;
+constexpr std::size_t kLeafNumbers = 6'000'000;
+constexpr double kMaxEffort_s = 1e7;
+
+// Options that mean here what they mean for a report.
+constexpr std::string_view kSharedOptions[] = {"points", "model", "order", "cutoff",
+                                               "gain",   "time",  "limit", "json"};
+
+struct CertifyOptions {
+  ReportOptions report;
+  double effort_s = 60.0;
+  std::string out_path;  // Empty for no file.
+};
+
+struct Argument {
+  std::string_view name;
+  std::string_view value;
+  bool has_value = false;
+};
+
+bool is_shared(std::string_view name) {
+  return std::find(std::begin(kSharedOptions), std::end(kSharedOptions), name) !=
+         std::end(kSharedOptions);
+}
+
+Problem wrong_option(std::string_view name) {
+  std::vector<std::string_view> names(std::begin(kSharedOptions), std::end(kSharedOptions));
+  names.insert(names.end(), {"effort", "out", "help", "version"});
+  const std::string_view meant =
+      nearest(name, Span<const std::string_view>(names.data(), names.size()));
+  return bad_input("--" + printable(name) + ": no option of emax certify; did you mean --" +
+                   std::string(meant) + "?");
+}
+
+Problem take_effort(std::string_view text, double& effort_s) {
+  const ParsedNumber number = parse_decimal(Span<const char>(text.data(), text.size()));
+  if (number.status != Status::kOk || number.length != text.size() || !(number.value > 0.0) ||
+      number.value > kMaxEffort_s) {
+    return bad_input("--effort: \"" + printable(text) +
+                     "\" given; expected a number of seconds above 0");
+  }
+  effort_s = number.value;
+  return {};
+}
+
+// Options of this command are taken here, the rest by the parser of a report's options.
+Problem parse_options(Span<const std::string_view> arguments, CertifyOptions& options) {
+  std::vector<std::string_view> shared;
+  bool has_effort = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view argument = arguments[i];
+    const std::size_t equals = argument.find('=');
+    const bool is_option = argument.size() > 2 && argument.substr(0, 2) == "--";
+    const std::string_view name =
+        is_option ? argument.substr(2, equals == std::string_view::npos ? equals : equals - 2)
+                  : std::string_view{};
+    if (name != "effort" && name != "out") {
+      if (is_option && !is_shared(name)) {
+        return wrong_option(name);
+      }
+      shared.push_back(argument);
+      continue;
+    }
+    const std::string dashed = "--" + std::string(name);
+    if (name == "effort" ? has_effort : !options.out_path.empty()) {
+      return bad_input(dashed + ": given twice; expected once");
+    }
+    const bool follows = equals == std::string_view::npos;
+    const bool missing =
+        follows && (i + 1 == arguments.size() || arguments[i + 1].substr(0, 2) == "--");
+    const std::string_view value =
+        missing ? std::string_view{} : (follows ? arguments[++i] : argument.substr(equals + 1));
+    if (value.empty()) {
+      return bad_input(dashed + ": no value; expected " +
+                       (name == "effort" ? "a number of seconds above 0" : "the name of a file"));
+    }
+    if (name == "out") {
+      options.out_path = std::string(value);
+      continue;
+    }
+    has_effort = true;
+    if (Problem problem = take_effort(value, options.effort_s)) {
+      return problem;
+    }
+  }
+  if (std::none_of(shared.begin(), shared.end(), [](std::string_view argument) {
+        return argument.substr(0, 7) == "--model" || argument.substr(0, 8) == "--points";
+      })) {
+    return bad_input("certify: no device; expected --model S,f0,beta or --points FILE");
+  }
+  return parse_report_options(Span<const std::string_view>(shared.data(), shared.size()),
+                              options.report);
+}
+
+// A file that appears under its name when it is complete.
+class CertificateFile final {
+ public:
+  explicit CertificateFile(std::string path) : path_(std::move(path)) {}
+  CertificateFile(const CertificateFile&) = delete;
+  CertificateFile& operator=(const CertificateFile&) = delete;
+  ~CertificateFile() {
+    if (file_ != nullptr) {
+      std::fclose(file_);
+      std::remove(temporary().c_str());
+    }
+  }
+
+  // Before the long work.
+  Problem open() {
+    file_ = path_.empty() ? nullptr : std::fopen(temporary().c_str(), "wbx");
+    return file_ == nullptr && !path_.empty()
+               ? bad_input("--out: " + printable(path_) + ": " + std::strerror(errno) +
+                           "; expected a file in a directory that can be written to")
+               : Problem{};
+  }
+
+  Problem write(const ProvenEnergy& proven) {
+    if (file_ == nullptr) {
+      return {};
+    }
+    FileSink sink(file_);
+    app::TextWriter out(sink);
+    write_certificate(proven, out);
+    sink.flush();
+    errno = 0;
+    const bool closed = std::fclose(file_) == 0;
+    file_ = nullptr;
+    const bool done =
+        sink.error() == 0 && closed && std::rename(temporary().c_str(), path_.c_str()) == 0;
+    if (!done) {
+      const int error = sink.error() != 0 ? sink.error() : errno;
+      std::remove(temporary().c_str());
+      return fault(printable(path_) + ": " + std::strerror(error) + "; it has not been kept");
+    }
+    return {};
+  }
+
+ private:
+  std::string temporary() const { return path_ + "." + std::to_string(getpid()); }
+
+  std::string path_;
+  std::FILE* file_ = nullptr;
+};
+
+// Finds the device and the signal with the largest energy known.
+Problem find_energy(const ReportOptions& options, app::Evaluation& evaluation) {
+  static app::EvaluationWorkspace workspace;
+  Status status = Status::kOk;
+  if (options.points_path.empty()) {
+    status = evaluation.start_from_model(options.device, options.settings, workspace,
+                                         app::Goal::kEnergy);
+  } else {
+    static FrequencyResponse points;
+    if (Problem problem =
+            read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+      return problem;
+    }
+    status = evaluation.start_from_points(points, options.settings, workspace, app::Goal::kEnergy);
+  }
+  ConsoleProgress progress;
+  while (status == Status::kOk && !evaluation.done() && !evaluation.has_energy()) {
+    if (stop_requested()) {
+      return stopped();
+    }
+    progress.show(name_of(evaluation.stage()), evaluation.progress());
+    evaluation.step(workspace);
+    status = evaluation.status();
+  }
+  if (status == Status::kOk) {
+    return {};
+  }
+  StringSink sentence;
+  app::TextWriter writer(sentence);
+  write_failure(evaluation, writer);
+  const bool is_search = status == Status::kTooManyCells || status == Status::kTooManySwitches;
+  const std::string source =
+      options.points_path.empty() ? "--model" : name_of_input(options.points_path);
+  return bad_input((is_search ? "--time" : source) + ": " + sentence.text());
+}
+
+// Memory of a certificate, and the certificate.
+class Work final {
+ public:
+  Problem start(const ModalModel& model, double duration_s, double effort_s) {
+    const std::size_t coarsest = coarsest_certificate(model, duration_s);
+    const double affordable = std::sqrt(kMultipliersShare * effort_s / kEnoughIterations / kPair_s);
+    const double most = 0.92 * static_cast<double>(kMaxCertificateCells);
+    const double finest = std::min(kFinest * static_cast<double>(coarsest), most);
+    const auto cells = static_cast<std::size_t>(
+        std::max(static_cast<double>(coarsest), std::min(affordable, finest)));
+    // What the narrow cells at the ends add is less than a tenth and 32.
+    const std::size_t room = std::min(kMaxCertificateCells, cells + cells / 10 + 32);
+    const std::size_t leaves =
+        std::min(EnergyCertificate::kMaxLeaves, kLeafNumbers / (kCertificateRank * room));
+    const std::size_t intervals = std::min(mesh_intervals(model, duration_s), kMaxMesh);
+    numbers_.resize(certificate_numbers(room, intervals, leaves));
+    multipliers_.resize(kMultipliers);
+    hash_.resize(kHash);
+    nodes_.resize(2 * leaves);
+    signs_.resize(leaves * room);
+    duals_.resize(leaves * room);
+    CertificateWorkspace workspace;
+    workspace.numbers = {numbers_.data(), numbers_.size()};
+    workspace.multipliers = {multipliers_.data(), multipliers_.size()};
+    workspace.hash = {hash_.data(), hash_.size()};
+    workspace.nodes = {nodes_.data(), nodes_.size()};
+    workspace.signs = {signs_.data(), signs_.size()};
+    workspace.duals = {duals_.data(), duals_.size()};
+    const Status status = certificate_->start(model, duration_s, cells, workspace);
+    if (status == Status::kInvalidOrder) {
+      return bad_input(
+          "--order: the proof needs an error response that starts at zero; expected "
+          "an order of 2 or more");
+    }
+    if (status == Status::kTooManyCells) {
+      return bad_input(
+          "--time: the proof needs more cells than there is room for; expected a "
+          "shorter time");
+    }
+    return status == Status::kOk ? Problem{}
+                                 : bad_input(std::string("--model: ") + explain(status));
+  }
+
+  EnergyCertificate& certificate() { return *certificate_; }
+
+ private:
+  std::vector<double> numbers_;
+  std::vector<TriangleMultiplier> multipliers_;
+  std::vector<std::uint32_t> hash_;
+  std::vector<CertificateNode> nodes_;
+  std::vector<std::int8_t> signs_;
+  std::vector<std::int32_t> duals_;
+  std::unique_ptr<EnergyCertificate> certificate_ = std::make_unique<EnergyCertificate>();
+};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A progress line with the gap: that of a proof only once there is one.
+void show(ConsoleProgress& progress, const char* words, double bound, double energy,
+          double fraction) {
+  char stage[64];
+  std::snprintf(stage, sizeof stage, "%s, gap %.3f %%,", words, 100.0 * (bound / energy - 1.0));
+  progress.show(stage, fraction);
+}
+
+void improve_multipliers(EnergyCertificate& certificate, double energy, double from_progress,
+                         double time_s, bool may_stop) {
+  ConsoleProgress progress;
+  const Clock::time_point start = Clock::now();
+  for (double part = 0.0; part < 1.0 && !(may_stop && stop_requested());
+       part = seconds_since(start) / time_s) {
+    const double now = from_progress + (1.0 - from_progress) * part;
+    certificate.improve(now);
+    show(progress, "multipliers", certificate.estimate(), energy, now);
+  }
+}
+
+Problem prove(EnergyCertificate& certificate, double energy, double effort_s,
+              Clock::time_point start) {
+  ConsoleProgress progress;
+  while (!certificate.ready()) {
+    if (stop_requested()) {
+      return stopped();
+    }
+    progress.show("bounds of the kernel", certificate.preparation());
+    certificate.prepare();
+  }
+  progress.erase();
+  const Clock::time_point ready = Clock::now();
+  const double time_s = kMultipliersShare * std::max(effort_s - seconds_since(start), 0.0);
+  improve_multipliers(certificate, energy, 0.0, std::max(time_s, 0.1), true);
+  if (stop_requested()) {
+    const double part = std::min(seconds_since(ready) / std::max(time_s, 0.1), 0.9);
+    improve_multipliers(certificate, energy, part, kRest_s, false);
+  }
+  if (!certificate.prove()) {
+    return fault(
+        "certify: no factorisation came out, so nothing is proven; expected more seconds "
+        "of --effort to help");
+  }
+  const double begin_s = seconds_since(start);
+  double now_s = begin_s;
+  while (now_s < effort_s && !stop_requested() && certificate.branch()) {
+    now_s = seconds_since(start);
+    show(progress, "cases", certificate.bound(), energy, (now_s - begin_s) / (effort_s - begin_s));
+  }
+  return {};
+}
+
+struct Result {
+  ProvenEnergy proven;
+  double seconds = 0.0;
+  std::string certificate_path;
+};
+
+void write_json(const Result& result, app::TextWriter& out) {
+  const EnergyCertificate& certificate = *result.proven.certificate;
+  out.text("{\"E\": ").exact(result.proven.energy_v2s);
+  out.text(", \"bound\": ").exact(result.proven.bound_v2s());
+  out.text(", \"gap\": ").exact(result.proven.gap());
+  out.text(", \"cells\": ").integer(certificate.grid().cells);
+  out.text(", \"multipliers\": ").integer(certificate.used_multipliers());
+  out.text(", \"nodes\": ").integer(certificate.nodes().size());
+  out.text(", \"seconds\": ").fixed(result.seconds, 1).text("}\n");
+}
+
+void write_text(const Result& result, app::TextWriter& out) {
+  const ProvenEnergy& proven = result.proven;
+  const EnergyCertificate& certificate = *proven.certificate;
+  const Accelerometer& device = proven.model->device();
+  const Butterworth& filter = proven.model->filter();
+  const std::size_t switches = proven.signal->count();
+  const double duration_s = proven.signal->duration_s();
+  out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
+  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
+  out.text("\nFilter      Butterworth, order ").integer(static_cast<std::uint64_t>(filter.order));
+  out.text(", cutoff ").general(filter.cutoff_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
+  out.text(" V/(m/s^2)\nSignals     of any shape within +-").general(proven.limit_mps2, 7);
+  out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n\n");
+  out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");
+  out.integer(switches).text(switches == 1 ? " switch\n" : " switches\n");
+  out.text("Proven      E <= ").general(rounded_up(proven.bound_v2s(), 6), 7);
+  out.text(" V^2 s for every such signal\nGap         ").fixed(100.0 * proven.gap(), 3);
+  out.text(" % of the energy reached\nRMS error   ");
+  out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
+  out.general(rounded_up(std::sqrt(proven.bound_v2s() / duration_s), 4), 5).text(" V\n\n");
+  out.text("The proof has ").integer(certificate.grid().cells).text(" cells, ");
+  out.integer(certificate.used_multipliers()).text(" multipliers and ");
+  out.integer(certificate.nodes().size());
+  out.text(certificate.nodes().size() == 1 ? " node" : " nodes").text(", found in ");
+  out.fixed(result.seconds, 1).text(" s.\n");
+  if (!result.certificate_path.empty()) {
+    out.text("Certificate in ").text(printable(result.certificate_path).c_str());
+    out.text(";\ncheck it with host_tests/reference/check_certificate.py.\n");
+  }
+}
+
+}  // namespace
+
+Problem run_certify(Span<const std::string_view> arguments) {
+  const Clock::time_point start = Clock::now();
+  CertifyOptions options;
+  if (Problem problem = parse_options(arguments, options)) {
+    return problem;
+  }
+  // Only the estimate's energy is wanted.
+  options.report.settings.trend_count = 0;
+  static app::Evaluation evaluation;
+  CertificateFile file(options.out_path);
+  Problem problem = find_energy(options.report, evaluation);
+  if (problem || (problem = file.open())) {
+    return problem;
+  }
+  const ModalModel model = evaluation.model();
+  Work work;
+  problem = work.start(model, evaluation.maximum().signal.duration_s(), options.effort_s);
+  if (problem ||
+      (problem = prove(work.certificate(), evaluation.maximum().energy, options.effort_s, start))) {
+    return problem;
+  }
+  Result result;
+  result.proven.model = &model;
+  result.proven.certificate = &work.certificate();
+  result.proven.signal = &evaluation.maximum().signal;
+  result.proven.limit_mps2 = evaluation.limit_mps2();
+  result.proven.energy_v2s = evaluation.energy_v2s();
+  result.seconds = seconds_since(start);
+  result.certificate_path = options.out_path;
+  if ((problem = file.write(result.proven))) {
+    return problem;
+  }
+  FileSink sink(stdout);
+  app::TextWriter out(sink);
+  options.report.json ? write_json(result, out) : write_text(result, out);
+  return check_output(sink);
+}
+
+std::string help_on_certify() {
+  return R"(usage: emax certify --model S,f0,beta [options]
+       emax certify --points FILE [options]
+
+Proves how far the maximum energy of emax report can be from the truth: a bound
+of the integral-square error that no signal within +-a on [0, T] exceeds,
+whatever its shape. The longer it runs the tighter the bound; Ctrl-C ends it
+early with what is proven by then.
+
+  --model S,f0,beta      the device; or
+  --points FILE          measured points, as for emax report
+  --order L              order of the reference filter, 2 to 15 (default 10)
+  --cutoff HZ            its cutoff frequency (-3 dB) in Hz (default 1000)
+  --gain auto|NUMBER     its gain in V/(m/s^2); auto is S (default auto)
+  --time SECONDS         length T of the signal in s (default 0.002)
+  --limit auto|NUMBER    limit a of the signal in m/s^2; auto is the number of S
+  --effort SECONDS       how long to work on the bound (default 60)
+  --out FILE             the certificate, JSON, which
+                         host_tests/reference/check_certificate.py verifies
+  --json                 {E,bound,gap,cells,multipliers,nodes,seconds} on
+                         standard output instead of text
+  --help                 this text
+  --version              the version of the program
+)";
+}
+
+}  // namespace emax::host

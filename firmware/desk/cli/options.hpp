@@ -1,0 +1,56 @@
+// The command line of `emax report`: its options, their help and their errors.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/report/report_context.hpp"
+#include "emax/app/settings/settings.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
+#include "emax/base/span.hpp"
+#include "emax/sim/sim_bench.hpp"
+
+#include "desk/cli/problem.hpp"
+
+namespace emax::host {
+
+/// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
+/// neither, from a measurement on the simulated bench.
+struct ReportOptions {
+  app::Settings settings;
+  std::string points_path;  ///< "-" for standard input; empty for none.
+  std::string model_text;   ///< As it was given; empty for none.
+  app::Device device = {};  ///< What `model_text` says.
+  std::size_t seed_count = 4;
+  /// Expanded. Without the option it is what `sweep` says on the bench, and 0 else.
+  double reference_uncertainty_percent = 0.0;
+  sim::BenchSettings bench;
+  app::SweepSettings sweep;
+  std::string device_name;  ///< This and the next four are labels, empty if not given.
+  std::string serial;
+  std::string operated_by;
+  std::string date;
+  std::string note;
+  bool in_g = false;
+  bool json = false;
+  std::string out_directory;  ///< Empty for no files.
+
+  bool measures() const noexcept { return points_path.empty() && model_text.empty(); }
+  /// Refers to this object.
+  app::Labels labels() const noexcept;
+};
+
+/// Reads the arguments behind `emax report` and checks all that can be checked without a file.
+///
+/// @param[out] options Of no use if there is a problem.
+Problem parse_report_options(Span<const std::string_view> arguments, ReportOptions& options);
+
+/// @returns The help of all options, in lines of at most 80 characters.
+std::string help_on_report_options();
+
+/// @returns The same for those of the simulated bench and its sweep alone.
+std::string help_on_bench_options();
+
+}  // namespace emax::host

@@ -1,0 +1,17 @@
+// The picture of a comparison: each device's energy with its uncertainty and its bound.
+#pragma once
+
+#include "emax/app/base/text_writer.hpp"
+
+#include "desk/compare/comparison.hpp"
+
+namespace emax::host {
+
+inline constexpr const char* kComparisonScript = "comparison.gp";
+inline constexpr const char* kComparisonPicture = "comparison.svg";
+
+/// Writes the script for gnuplot 5.4, with its numbers in it. One row per device, at most 40 of
+/// them: the first ones.
+void write_comparison_script(const Comparison& comparison, app::TextWriter& out);
+
+}  // namespace emax::host

@@ -1,0 +1,21 @@
+// A table of measured points from a file or from standard input.
+#pragma once
+
+#include <string>
+
+#include "emax/identify/frequency_response.hpp"
+
+#include "desk/cli/problem.hpp"
+
+namespace emax::host {
+
+/// Reads the points of a CSV file (`app::PointsReader`) of at most 1 MiB.
+///
+/// @param[in]  path              "-" for standard input.
+/// @param[in]  reference_percent The reference's expanded uncertainty, which is within that of each
+///                               amplitude and is made the part common to all points; 0 for none.
+/// @param[out] points            The points; of no use if there is a problem.
+/// @returns The problem with file name, line and expectation, if there is one.
+Problem read_points(const std::string& path, double reference_percent, FrequencyResponse& points);
+
+}  // namespace emax::host

@@ -1,0 +1,145 @@
+// The files of a report.
+#include "desk/files/report_files.hpp"
+
+#include <vector>
+
+#include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report.hpp"
+
+#include "desk/cli/stop_request.hpp"
+#include "desk/page/html_page.hpp"
+#include "desk/pictures/pictures.hpp"
+
+namespace emax::host {
+
+namespace {
+
+// The tables; they need nothing but the evaluation.
+struct Table {
+  const char* name;
+  void (*write)(const app::Evaluation& evaluation, app::TextWriter& out) noexcept;
+  bool needs_points;
+};
+
+constexpr Table kTables[] = {
+    {"frequency_response.csv", app::write_frequency_response_csv, true},
+    {"impulse_response.csv", app::write_impulse_response_csv, false},
+    {"signal.csv", app::write_signal_csv, false},
+    {"trend.csv", app::write_trend_csv, false},
+    {"histogram.csv", app::write_histogram_csv, false},
+};
+
+Problem add_tables(const app::Evaluation& evaluation, OutputFiles& files) {
+  for (const Table& table : kTables) {
+    if (table.needs_points && evaluation.source() != app::Source::kPoints) {
+      files.drop(table.name);
+      continue;
+    }
+    Problem problem =
+        files.add(table.name, [&](app::TextWriter& out) { table.write(evaluation, out); });
+    if (problem) {
+      return problem;
+    }
+  }
+  return {};
+}
+
+// Those of an earlier run go, unless there are new ones.
+void drop_pictures(OutputFiles& files) {
+  for (const char* name : kPictureFiles) {
+    files.drop(name);
+  }
+  files.drop(kPictureScript);
+  files.drop(kStartTable);
+}
+
+// The script of the pictures, and the pictures where gnuplot can draw them.
+//
+// @param[out] remark What stands in the way of the pictures.
+Problem add_pictures(const app::Evaluation& evaluation, const app::ReportContext& context,
+                     OutputFiles& files, std::vector<PagePicture>& shown, Problem& remark) {
+  drop_pictures(files);
+  const std::vector<Picture> pictures = pictures_of(evaluation, context);
+  Problem problem = files.add(kPictureScript, [&](app::TextWriter& out) {
+    write_picture_script(pictures, evaluation, out);
+  });
+  if (problem) {
+    return problem;
+  }
+  if (has_start_table(evaluation)) {
+    problem =
+        files.add(kStartTable, [&](app::TextWriter& out) { write_start_table(evaluation, out); });
+    if (problem) {
+      return problem;
+    }
+  }
+  std::vector<const char*> names;
+  names.reserve(pictures.size());
+  for (const Picture& picture : pictures) {
+    names.push_back(picture.file);
+  }
+  problem = files.draw(kPictureScript, Span<const char* const>(names.data(), names.size()), remark);
+  if (problem) {
+    return problem;
+  }
+  if (remark.line.empty()) {
+    for (const Picture& picture : pictures) {
+      shown.push_back({picture, files.content_of(picture.file)});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Problem write_files(const app::Evaluation& evaluation, const app::ReportContext& context,
+                    OutputFiles& files, Problem& remark) {
+  Problem problem = files.add(
+      "report.txt", [&](app::TextWriter& out) { write_report(evaluation, context, out); });
+  if (problem) {
+    return problem;
+  }
+  problem = files.add("results.json",
+                      [&](app::TextWriter& out) { write_json(evaluation, context, out); });
+  if (problem) {
+    return problem;
+  }
+  problem = add_tables(evaluation, files);
+  if (problem) {
+    return problem;
+  }
+  std::vector<PagePicture> pictures;
+  problem = add_pictures(evaluation, context, files, pictures, remark);
+  if (problem) {
+    return problem;
+  }
+  problem = files.add(
+      "report.html", [&](app::TextWriter& out) { write_page(evaluation, context, pictures, out); });
+  if (problem) {
+    return problem;
+  }
+  return stop_requested() ? stopped() : files.commit();
+}
+
+Problem write_fault_files(const app::ReportContext& context, const app::Evaluation* refused,
+                          OutputFiles& files) {
+  const auto text = [&](app::TextWriter& out) { write_measurement(context, refused, out); };
+  const auto results = [&](app::TextWriter& out) { write_measurement_json(context, refused, out); };
+  const auto page = [&](app::TextWriter& out) { write_fault_page(context, refused, out); };
+  const auto points = [&](app::TextWriter& out) {
+    write_measured_points_csv(*context.measurement, out);
+  };
+  Problem problem = files.add("report.txt", text);
+  problem = problem ? problem : files.add("results.json", results);
+  problem = problem ? problem : files.add("report.html", page);
+  problem = problem ? problem : files.add("frequency_response.csv", points);
+  for (const Table& table : kTables) {
+    if (!table.needs_points) {
+      files.drop(table.name);
+    }
+  }
+  drop_pictures(files);
+  return problem ? problem : files.commit();
+}
+
+}  // namespace emax::host

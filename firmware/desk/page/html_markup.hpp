@@ -1,0 +1,81 @@
+// The parts of a report as sections, rows and tables of HTML.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/report/report_context.hpp"
+#include "emax/base/span.hpp"
+
+namespace emax::host {
+
+/// Adds text of others to HTML: markup is escaped, what is not printable replaced, line feeds kept.
+void append_quoted(std::string& html, const char* text);
+
+/// Adds words of ours: "m/s^2" with a raised 2, "+-" as one sign.
+void append_words(std::string& html, std::string_view words);
+
+/// The words and numbers of a report, between the marks that `HtmlMarkup` sets.
+class HtmlWords final : public app::TextSink {
+ public:
+  explicit HtmlWords(std::string& html) noexcept : html_(html) {}
+  void write(Span<const char> text) noexcept override {
+    append_words(html_, std::string_view(text.data(), text.size()));
+  }
+
+ private:
+  std::string& html_;
+};
+
+/// What comes at the end of each section: its pictures.
+class SectionEnd {
+ public:
+  SectionEnd(const SectionEnd&) = delete;
+  SectionEnd& operator=(const SectionEnd&) = delete;
+  virtual void add_to(std::string& html, app::ReportSection section) = 0;
+
+ protected:
+  SectionEnd() = default;
+  ~SectionEnd() = default;
+};
+
+class HtmlMarkup final : public app::ReportMarkup {
+ public:
+  HtmlMarkup(std::string& html, SectionEnd& section_end) noexcept
+      : html_(html), section_end_(section_end) {}
+
+  void begin(app::ReportSection section, const char* heading) noexcept override;
+  void begin(app::ReportPart part, const char* name) noexcept override;
+  void quote(const char* text) noexcept override { append_quoted(html_, text); }
+
+  /// Ends the last section.
+  void finish();
+
+  /// @returns How many warnings the report has, and links to their sections.
+  std::size_t warnings() const noexcept { return warnings_; }
+  const std::string& warning_links() const noexcept { return warning_links_; }
+
+ private:
+  // What is open: nothing, a table of rows, a paragraph, a table of lines.
+  enum class Block { kNone, kRows, kParagraph, kHead, kBody };
+
+  void end_block();
+  void begin_row(const char* name);
+  void begin_paragraph(const char* kind);
+  void begin_line(bool is_head);
+  void note_warning();
+
+  std::string& html_;
+  SectionEnd& section_end_;
+  app::ReportSection section_ = app::ReportSection::kTitle;
+  Block block_ = Block::kNone;
+  bool has_cell_ = false;
+  bool has_section_ = false;
+  std::size_t warnings_ = 0;
+  std::string warning_links_;
+  app::ReportSection last_warned_ = app::ReportSection::kTitle;
+};
+
+}  // namespace emax::host

@@ -1,0 +1,32 @@
+// The report as one page for a browser or a printer, with its pictures inside.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/report/report_context.hpp"
+
+#include "desk/pictures/pictures.hpp"
+
+namespace emax::host {
+
+/// A picture as it stands in a page.
+struct PagePicture {
+  Picture picture;
+  std::string svg;  ///< What gnuplot has written.
+};
+
+/// Writes a page in UTF-8 that needs nothing from outside itself and no scripts.
+///
+/// @param[in] evaluation With the stage kDone.
+/// @param[in] pictures   Empty if there are none; the page says so then.
+void write_page(const app::Evaluation& evaluation, const app::ReportContext& context,
+                const std::vector<PagePicture>& pictures, app::TextWriter& out);
+
+/// The same for a measurement that led to no result; `context` has the measurement.
+void write_fault_page(const app::ReportContext& context, const app::Evaluation* refused,
+                      app::TextWriter& out);
+
+}  // namespace emax::host

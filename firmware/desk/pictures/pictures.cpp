@@ -1,0 +1,619 @@
+// The pictures of a report, drawn by gnuplot.
+#include "desk/pictures/pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "emax/app/report/report.hpp"
+#include "emax/base/units.hpp"
+#include "emax/model/accelerometer.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/pictures/gnuplot.hpp"
+
+namespace emax::host {
+
+namespace {
+
+using app::Evaluation;
+using app::TextWriter;
+
+constexpr std::uint32_t kNameShown = 36;
+constexpr double kMilli = 1e3;
+constexpr double kPercent = 100.0;
+// Rows per period of the fastest oscillation, below which a curve would be a pattern of its rows.
+constexpr double kLeastRowsPerPeriod = 20.0;
+// Fewer rows make a curve of corners.
+constexpr double kLeastRows = 400.0;
+constexpr double kPeriodsShown = 50.0;
+
+// Words and numbers as a string.
+template <typename Write>
+std::string words_of(const Write& write) {
+  StringSink sink;
+  TextWriter out(sink);
+  write(out);
+  return sink.text();
+}
+
+// Titles
+
+std::string parameters_of(const Evaluation& evaluation) {
+  const Accelerometer& device = evaluation.device().estimate;
+  return words_of([&](TextWriter& out) {
+    out.text("S = ").general(device.sensitivity, 5).text(" V/(m/s²), f0 = ");
+    out.general(device.natural_frequency_hz, 6).text(" Hz, β = ").general(device.damping, 5);
+  });
+}
+
+std::string filter_of(const Evaluation& evaluation) {
+  const Butterworth& filter = evaluation.model().filter();
+  return words_of([&](TextWriter& out) {
+    out.text("reference filter: Butterworth, order ");
+    out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
+    out.general(filter.cutoff_hz, 6).text(" Hz, gain ").general(filter.gain, 5);
+    out.text(" V/(m/s²)");
+  });
+}
+
+std::string conditions_of(const Evaluation& evaluation, bool with_time, bool in_g) {
+  const app::Settings& settings = evaluation.settings();
+  const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
+  return words_of([&](TextWriter& out) {
+    if (with_time) {
+      out.text("T = ").general(kMilli * settings.duration_s, 6).text(" ms, ");
+    }
+    out.text("a = ").general(evaluation.limit_mps2(), 5).text(" m/s²");
+    if (in_g) {
+      out.text(" (").general(evaluation.limit_mps2() / app::kStandardGravity_mps2, 5).text(" g)");
+    }
+    out.text(", filter of order ");
+    out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(", ");
+    out.general(settings.cutoff_hz, 6).text(" Hz, ");
+    out.text(is_ise ? "integral-square error" : "energy difference");
+    out.text(settings.method == Method::kPaper ? ", paper's method" : "");
+  });
+}
+
+std::string fit_quality_of(const Evaluation& evaluation) {
+  const WlspFit& fit = evaluation.fit().result();
+  return words_of([&](TextWriter& out) {
+    out.text("bars: expanded uncertainty (k = 2); χ²/dof = ").general(fit.chi2 / fit.dof, 4);
+    out.text(", Birge ratio ").general(fit.birge_ratio, 3);
+  });
+}
+
+std::string energy_of(const Evaluation& evaluation) {
+  const double energy = evaluation.energy_v2s();
+  return words_of([&](TextWriter& out) {
+    out.text("E = ").scientific(energy, 4).text(" V² s");
+    if (energy >= 0.0) {
+      const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
+      const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+      out.text(is_ise ? ", rms error " : ", √(E/T) = ")
+          .general(evaluation.rms_error_v(), 4)
+          .text(" V = ");
+      out.general(kPercent * evaluation.rms_error_v() / full, 4).text(" % of S·a");
+    }
+  });
+}
+
+std::string trials_of(const Evaluation& evaluation) {
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  const bool is_box = evaluation.settings().distribution == Distribution::kBox;
+  return words_of([&](TextWriter& out) {
+    out.integer(result.trials).text(" trials, S, f0 and β ");
+    out.text(is_box ? "uniform within ±u" : "jointly normal").text("; u(E) = ");
+    out.scientific(result.u, 2).text(" V² s");
+  });
+}
+
+std::string line_of(const Evaluation& evaluation) {
+  const Trend& trend = evaluation.trend();
+  return words_of([&](TextWriter& out) {
+    out.text("line: E = ").general(trend.slope, 5).text(" V² · T ");
+    out.text(trend.intercept < 0.0 ? "− " : "+ ").general(std::abs(trend.intercept), 4);
+    out.text(" V² s, correlation ").fixed(trend.correlation, 6);
+  });
+}
+
+// A gnuplot expression for a title of several lines, in which no character has a meaning.
+std::string title_lines(const std::string& first, const std::string& second,
+                        const std::string& third) {
+  return gnuplot_string(first) + ".\"\\n\".\\\n  " + gnuplot_string(second) + ".\"\\n\".\\\n  " +
+         gnuplot_string(third);
+}
+
+// Axes
+
+// What numbers of an axis are multiplied by, and the unit that they have then.
+struct Scale {
+  double factor;
+  std::string unit;
+};
+
+int thousands_of(double largest) {
+  const double size = std::abs(largest);
+  return size > 0.0 ? static_cast<int>(std::floor(std::log10(size) / 3.0 + 1e-9)) : 0;
+}
+
+std::string superscript(int exponent) {
+  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = exponent < 0 ? "⁻" : "";
+  for (const char digit : std::to_string(std::abs(exponent))) {
+    text += kDigits[digit - '0'];
+  }
+  return text;
+}
+
+// Below 1000 and from `plain` on there is no power of ten.
+Scale scaled(double largest, const std::string& unit, double plain = 1.0) {
+  const int exponent = 3 * thousands_of(largest);
+  if (exponent == 0 || (exponent < 0 && std::abs(largest) >= plain)) {
+    return {1.0, unit};
+  }
+  return {std::pow(10.0, -exponent), "10" + superscript(exponent) + " " + unit};
+}
+
+// The same for units that have prefixes.
+Scale prefixed(double largest, const std::string& unit) {
+  constexpr const char* kPrefixes[] = {"n", "µ", "m", "", "k"};
+  const int thousands = std::clamp(thousands_of(largest), -3, 1);
+  return {std::pow(10.0, -3 * thousands), kPrefixes[thousands + 3] + unit};
+}
+
+Scale time_scale(double end_s) {
+  const Scale scale = prefixed(end_s, "s");
+  return scale.factor < 1.0 ? Scale{1.0, "s"} : scale;
+}
+
+Scale energy_scale(const Evaluation& evaluation) { return scaled(evaluation.energy_v2s(), "V² s"); }
+
+// As many decimals as tell the marks of an axis of that length apart.
+int decimals_of_axis(double length) {
+  constexpr double kMarks = 10.0;
+  return std::max(0, static_cast<int>(std::ceil(-std::log10(length / kMarks))));
+}
+
+// What each picture starts from, whatever the one before it has set.
+void write_start(TextWriter& out, const Picture& picture, int height) {
+  out.text(
+      "\nreset\nset minussign\nset border lw 1\nset grid lc '#c8c8c8' lw 1 dt (2,3)\n"
+      "set xzeroaxis lt 1 lc '#808080' lw 1\nset xlabel offset 0,0.3\nset "
+      "pointintervalbox 0\n"
+      "set datafile separator ','\n"
+      "set style line 1 lc '#000000' lw 2 dt solid\n"
+      "set style line 2 lc '#0060b0' lw 2 dt (10,5)\n"
+      "set style line 3 lc '#d05000' lw 2.5 dt (2,4)\n"
+      "set style line 4 lc '#000000' lw 1.2 pt 7 ps 0.4\n"
+      "set style line 5 lc '#d05000' lw 2 pt 8 ps 1.5\n"
+      "set style line 6 lc '#000000' lw 1 pt 7 ps 0.9\n"
+      "set terminal svg noenhanced font 'sans-serif,15' background '#ffffff' fixed size 900,");
+  out.integer(static_cast<std::uint64_t>(height)).text("\nset output ");
+  out.text(gnuplot_string(picture.file).c_str()).line();
+}
+
+void write_value(TextWriter& out, const char* name, double value) {
+  out.text(name).text(" = ").exact(value).line();
+}
+
+void write_axis(TextWriter& out, const char* axis, const char* name, const std::string& unit) {
+  out.text("set ").text(axis).text("label '").text(name).text(" in ").text(unit.c_str());
+  out.text("'\n");
+}
+
+// Frequency response
+
+// What the axes of the frequency response have to reach to.
+struct ResponseRange {
+  double least_amplitude = HUGE_VAL;
+  double largest_amplitude = 0.0;
+  double amplitude_deviation = 0.0;  // From the fit, relative to it, with U (k = 2).
+  double phase_deviation_rad = 0.0;
+};
+
+ResponseRange range_of(const Evaluation& evaluation) {
+  constexpr double kCoverageFactor = 2.0;
+  const Accelerometer& device = evaluation.device().estimate;
+  const Span<const double> common = evaluation.fit().response().common();
+  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  ResponseRange range;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ResponsePoint& point = points[i];
+    const double fitted = amplitude(device, point.frequency_hz);
+    const double lag_rad = phase_rad(device, point.frequency_hz);
+    const double u = std::hypot(point.u_amplitude, common[i] * point.amplitude);
+    range.least_amplitude = std::min({range.least_amplitude, point.amplitude, fitted});
+    range.largest_amplitude = std::max({range.largest_amplitude, point.amplitude, fitted});
+    range.amplitude_deviation =
+        std::max(range.amplitude_deviation,
+                 (std::abs(point.amplitude - fitted) + kCoverageFactor * u) / fitted);
+    range.phase_deviation_rad =
+        std::max(range.phase_deviation_rad,
+                 std::abs(point.phase_rad - lag_rad) + kCoverageFactor * point.u_phase_rad);
+  }
+  return range;
+}
+
+// A large resonance would leave nothing of the rest on a linear axis.
+bool spans_much(const ResponseRange& range) {
+  constexpr double kMuch = 20.0;
+  return range.largest_amplitude > kMuch * range.least_amplitude;
+}
+
+// A logarithmic axis, with marks at 1, 2 and 5 where there are not two decades of them.
+void write_frequency_axis(const Evaluation& evaluation, TextWriter& out) {
+  constexpr double kMargin = 1.15;
+  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  const double first = points[0].frequency_hz;
+  const double last = points[points.size() - 1].frequency_hz;
+  out.text("set logscale x\nset xrange [").general(first / kMargin, 4).text(":");
+  out.general(last * kMargin, 4).text("]\n");
+  if (last < 100.0 * first) {
+    const int decades_from = static_cast<int>(std::floor(std::log10(first / kMargin)));
+    const int decades_to = static_cast<int>(std::ceil(std::log10(last * kMargin)));
+    out.text("set xtics (");
+    for (int decade = decades_from; decade <= decades_to; ++decade) {
+      for (const double step : {1.0, 2.0, 5.0}) {
+        out.text(decade == decades_from && step == 1.0 ? "" : ", ");
+        out.exact(step * std::pow(10.0, decade));
+      }
+    }
+    out.text(")\n");
+  }
+}
+
+void write_frequency_response(const Picture& picture, const Evaluation& evaluation,
+                              TextWriter& out) {
+  const Accelerometer& device = evaluation.device().estimate;
+  constexpr double kPlain = 0.01;
+  const ResponseRange range = range_of(evaluation);
+  const bool is_logarithmic = spans_much(range);
+  const Scale response =
+      is_logarithmic ? Scale{1.0, "V/(m/s²)"} : scaled(range.largest_amplitude, "V/(m/s²)", kPlain);
+  const Scale percent = scaled(kPercent * range.amplitude_deviation, "%", kPlain);
+  const Scale degrees = scaled(kDegreesPerRadian * range.phase_deviation_rad, "°", kPlain);
+  write_start(out, picture, 670);
+  write_value(out, "S", device.sensitivity);
+  write_value(out, "f0", device.natural_frequency_hz);
+  write_value(out, "beta", device.damping);
+  out.text("amplitude(f) = S/sqrt((1 - (f/f0)**2)**2 + (2*beta*f/f0)**2)\n");
+  out.text("phase(f) = -atan2(2*beta*f/f0, 1 - (f/f0)**2)*180/pi\n");
+  out.text("set multiplot layout 2,2 columnsfirst margins 0.1,0.98,0.15,0.84 spacing 0.12,0.05 ")
+      .text("title ");
+  const std::string title =
+      title_lines(picture.title, parameters_of(evaluation), fit_quality_of(evaluation));
+  out.text(title.c_str()).line();
+  write_frequency_axis(evaluation, out);
+  write_value(out, "As", response.factor);
+  write_value(out, "percent", kPercent * percent.factor);
+  write_value(out, "degrees", degrees.factor);
+  out.text("deviation(f, a) = (a/amplitude(f) - 1)*percent\n");
+  out.text("turn(f, p) = (p - phase(f))*degrees\n");
+  // Not by yerrorbars, which blank out what is around their points: short bars would be gone.
+  out.text(
+      "set style arrow 1 heads size screen 0.003,90 fixed lc '#000000' lw 1\nset samples 400\n");
+  out.text("set key at screen 0.5, screen 0.02 center bottom horizontal Left reverse\n");
+  out.text(is_logarithmic ? "set logscale y\nset format x ''\n" : "set format x ''\n");
+  write_axis(out, "y", "amplitude", response.unit);
+  out.text(
+      "plot 'frequency_response.csv' skip 1 using 1:(($2 - $4)*As):(0):(2*$4*As) with vectors "
+      "as 1 notitle, \\\n"
+      "  '' skip 1 using 1:($2*As) with points ls 4 title 'measured', \\\n"
+      "  amplitude(x)*As ls 2 title 'fit'\n"
+      "unset logscale y\nunset key\nset format x '%g'\nset xlabel 'frequency in Hz'\n"
+      "set ylabel 'phase in °'\n"
+      "plot 'frequency_response.csv' skip 1 using 1:($3 - $5):(0):(2*$5) with vectors as 1, \\\n"
+      "  '' skip 1 using 1:3 with points ls 4, phase(x) ls 2\n"
+      "set format x ''\nset xlabel ''\nset samples 2\n");
+  write_axis(out, "y", "measured − fit", percent.unit);
+  out.text(
+      "plot 'frequency_response.csv' skip 1 using 1:(deviation($1, $2 - $4)):(0):\\\n"
+      "  (2*$4/amplitude($1)*percent) with vectors as 1, \\\n"
+      "  '' skip 1 using 1:(deviation($1, $2)) with points ls 4, 0 ls 2\n"
+      "set format x '%g'\nset xlabel 'frequency in Hz'\n");
+  write_axis(out, "y", "measured − fit", degrees.unit);
+  out.text(
+      "plot 'frequency_response.csv' skip 1 using 1:(turn($1, $3 - $5)):(0):(2*$5*degrees) \\\n"
+      "  with vectors as 1, '' skip 1 using 1:(turn($1, $3)) with points ls 4, 0 ls 2\n"
+      "unset multiplot\n");
+}
+
+// Impulse response
+
+double end_of_table_s(const Evaluation& evaluation) {
+  return std::max(evaluation.settling_time().time_s, evaluation.settings().duration_s);
+}
+
+double fastest_hz(const Evaluation& evaluation) {
+  return std::max(evaluation.device().estimate.natural_frequency_hz,
+                  evaluation.model().filter().cutoff_hz);
+}
+
+// Of the time after the device has settled only a part is shown.
+double shown_s(const Evaluation& evaluation) {
+  constexpr double kBeyondSettling = 1.5;
+  const SettlingTime settling = evaluation.settling_time();
+  const double end_s = end_of_table_s(evaluation);
+  return settling.found ? std::min(end_s, kBeyondSettling * settling.time_s) : end_s;
+}
+
+double end_of_picture_s(const Evaluation& evaluation) {
+  const double end_s = shown_s(evaluation);
+  return has_start_table(evaluation) ? std::min(end_s, kPeriodsShown / fastest_hz(evaluation))
+                                     : end_s;
+}
+
+void write_impulse_response(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
+  const double end_s = end_of_picture_s(evaluation);
+  const Scale time = time_scale(end_s);
+  const Scale response = scaled(evaluation.peak().value, "V/(m/s)");
+  const SettlingTime settling = evaluation.settling_time();
+  const std::string table =
+      gnuplot_string(has_start_table(evaluation) ? kStartTable : "impulse_response.csv");
+  write_start(out, picture, 500);
+  const std::string title =
+      title_lines(picture.title, parameters_of(evaluation), filter_of(evaluation));
+  out.text("set title ").text(title.c_str()).line();
+  write_axis(out, "x", "time", time.unit);
+  write_axis(out, "y", "response", response.unit);
+  write_value(out, "ts", time.factor);
+  write_value(out, "ks", response.factor);
+  out.text("set xrange [0:").exact(time.factor * end_s);
+  out.text("]\nset bmargin 4.9\nset key bmargin center horizontal Left reverse\n");
+  if (settling.found && settling.time_s <= end_s) {
+    out.text("set arrow 1 from ").exact(time.factor * settling.time_s);
+    out.text(", graph 0 rto graph 0, graph 1 nohead lc '#606060' dt (6,4)\nset label 1 ");
+    // On the side where there is room.
+    const bool is_right = settling.time_s > 0.5 * end_s;
+    out.text("'settled to 5 %' at ").exact(time.factor * settling.time_s);
+    out.text(is_right ? ", graph 0.06 right offset -1,0\n" : ", graph 0.06 left offset 1,0\n");
+  }
+  out.text("plot ").text(table.c_str());
+  out.text(" skip 1 using ($1*ts):($2*ks) with lines ls 1 title 'k = ka − kf', \\\n");
+  out.text("  '' skip 1 using ($1*ts):($3*ks) with lines ls 2 title 'sensor, ka', \\\n");
+  out.text("  '' skip 1 using ($1*ts):($4*ks) with lines ls 3 title 'filter, kf'\n");
+}
+
+// Signal
+
+void write_signal(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
+  const double end_s = evaluation.settings().duration_s;
+  const double limit = evaluation.limit_mps2();
+  const Scale time = time_scale(end_s);
+  const double full_v = evaluation.device().estimate.sensitivity * limit;
+  const Scale error =
+      prefixed(evaluation.has_absolute_error() ? evaluation.absolute_error_v() : full_v, "V");
+  const Scale acceleration = scaled(limit, "m/s²");
+  const double shown_limit = acceleration.factor * limit;
+  write_start(out, picture, 560);
+  const std::string title = title_lines(picture.title, energy_of(evaluation),
+                                        conditions_of(evaluation, true, picture.in_g));
+  out.text("set multiplot title ").text(title.c_str()).line();
+  write_value(out, "ts", time.factor);
+  write_value(out, "ys", error.factor);
+  out.text("set xrange [0:").exact(time.factor * end_s).text("]\nunset key\n");
+  out.text("set lmargin at screen 0.12\nset rmargin at screen 0.97\n");
+  out.text("set tmargin at screen 0.83\nset bmargin at screen 0.64\nset format x ''\n");
+  write_value(out, "xs", acceleration.factor);
+  out.text("set yrange [").exact(-1.3 * shown_limit).text(":").exact(1.3 * shown_limit);
+  out.text("]\nset ytics ('−").general(shown_limit, 4).text("' ").exact(-shown_limit);
+  out.text(", '0' 0, '").general(shown_limit, 4).text("' ").exact(shown_limit).text(")\n");
+  write_axis(out, "y", "x", acceleration.unit);
+  out.text("plot 'signal.csv' skip 1 using ($1*ts):($2*xs) with lines ls 1\n");
+  out.text("set tmargin at screen 0.6\nset bmargin at screen 0.13\n");
+  out.text("set format x '%g'\nset ytics autofreq\nset yrange [*:*]\n");
+  write_axis(out, "x", "time", time.unit);
+  write_axis(out, "y", "error y", error.unit);
+  out.text("plot 'signal.csv' skip 1 using ($1*ts):($3*ys) with lines ls 1\n");
+  out.text("unset multiplot\n");
+}
+
+// Histogram
+
+// An energy of the axis: of large numbers that differ by little, the difference to E counts.
+struct EnergyAxis {
+  Scale scale;
+  double origin;
+  double low;  // Of the axis, in its unit.
+  double high;
+};
+
+EnergyAxis histogram_axis(const Evaluation& evaluation) {
+  constexpr double kMargin = 0.04;
+  constexpr int kMostDecimals = 5;
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  const double energy = evaluation.energy_v2s();
+  const double least = std::min(result.minimum, energy);
+  const double most = std::max(result.maximum, energy);
+  const double margin = kMargin * (most - least);
+  Scale scale = energy_scale(evaluation);
+  double origin = 0.0;
+  if (decimals_of_axis(scale.factor * (most - least)) > kMostDecimals) {
+    origin = energy;
+    scale = scaled(std::max(most - energy, energy - least), "V² s");
+  }
+  return {scale, origin, scale.factor * (least - margin - origin),
+          scale.factor * (most + margin - origin)};
+}
+
+void write_mark(TextWriter& out, const char* position, const char* style) {
+  out.text("set arrow from ").text(position).text(", graph 0 rto graph 0, graph 1 nohead front ");
+  out.text(style).line();
+}
+
+void write_histogram(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
+  const MonteCarloResult result = evaluation.monte_carlo().result();
+  const EnergyAxis axis = histogram_axis(evaluation);
+  write_start(out, picture, 480);
+  const std::string title = title_lines(picture.title, trials_of(evaluation),
+                                        conditions_of(evaluation, true, picture.in_g));
+  out.text("set title ").text(title.c_str()).line();
+  write_value(out, "Es", axis.scale.factor);
+  write_value(out, "origin", axis.origin);
+  write_value(out, "low", axis.scale.factor * (result.symmetric.low - axis.origin));
+  write_value(out, "high", axis.scale.factor * (result.symmetric.high - axis.origin));
+  write_value(out, "E", axis.scale.factor * (evaluation.energy_v2s() - axis.origin));
+  out.text("middle(a, b) = ((a + b)/2 - origin)*Es\n");
+  out.text("inside(a, b) = middle(a, b) > low && middle(a, b) < high\n");
+  write_axis(out, "x", axis.origin == 0.0 ? "E" : "E minus E at the estimates", axis.scale.unit);
+  out.text("set ylabel 'trials per bin'\nset format x '%.");
+  out.integer(static_cast<std::uint64_t>(decimals_of_axis(axis.high - axis.low))).text("f'\n");
+  out.text("set xrange [").exact(axis.low).text(":").exact(axis.high).text("]\n");
+  out.text("set yrange [0:*]\nset bmargin 4.9\nset key bmargin center horizontal Left reverse\n");
+  write_mark(out, "low", "ls 2");
+  write_mark(out, "high", "ls 2");
+  write_mark(out, "E", "ls 1");
+  out.text("plot 'histogram.csv' skip 1 using (middle($1, $2)):3:(($2 - $1)*Es) \\\n");
+  out.text("  with boxes fs solid border lc '#808080' lc '#dcdcdc' notitle, \\\n");
+  out.text("  '' skip 1 using (middle($1, $2)):(inside($1, $2) ? $3 : NaN):(($2 - $1)*Es) \\\n");
+  out.text("  with boxes fs solid border lc '#606060' lc '#a0a0a0' notitle, \\\n");
+  out.text("  keyentry with lines ls 1 title 'E at the estimates', \\\n");
+  out.text("  keyentry with lines ls 2 title '");
+  out.general(kPercent * result.probability, 6).text(" % coverage interval'\n");
+}
+
+// Trend
+
+void write_trend(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
+  const Span<const app::TrendPoint> points = evaluation.trend_points();
+  const double duration_s = evaluation.settings().duration_s;
+  const double last_s = std::max(points[points.size() - 1].duration_s, duration_s);
+  const double limit = evaluation.limit_mps2();
+  const Scale time = time_scale(last_s);
+  const Scale energy = scaled(limit * limit * points[points.size() - 1].energy, "V² s");
+  write_start(out, picture, 480);
+  const std::string title = title_lines(picture.title, line_of(evaluation),
+                                        conditions_of(evaluation, false, picture.in_g));
+  out.text("set title ").text(title.c_str()).line();
+  write_value(out, "ts", time.factor);
+  write_value(out, "Es", energy.factor);
+  write_axis(out, "x", "length T of the signal", time.unit);
+  write_axis(out, "y", "E", energy.unit);
+  out.text("set xrange [0:").exact(1.05 * time.factor * last_s).text("]\n");
+  out.text("set yrange [*<0:0<*]\nset offsets 0, 0, graph 0.1, 0\n");
+  // Where the line does not go.
+  out.text(evaluation.trend().slope < 0.0 ? "set key top right" : "set key top left");
+  out.text(" Left reverse\n");
+  // Of the report's own T, which need not be among those of the trend.
+  out.text("$report << END\n").exact(duration_s).text(",").exact(evaluation.energy_v2s());
+  out.text(",");
+  if (evaluation.has_bound()) {
+    out.exact(evaluation.bound_v2s());
+  }
+  out.text("\nEND\n");
+  out.text("plot 'trend.csv' skip 1 using ($1*ts):($3*Es) with lines ls 2 ");
+  out.text("title 'straight line', \\\n");
+  out.text("  $report using ($1*ts):($2*Es) with points ls 6 notitle, \\\n");
+  if (evaluation.has_bound()) {
+    out.text("  $report using ($1*ts):($3*Es) with points ls 5 ");
+    out.text("title 'proven: no signal has more', \\\n");
+  }
+  out.text("  'trend.csv' skip 1 using ($1*ts):($2*Es) with points ls 6 ");
+  out.text("title 'largest energy found'\n");
+}
+
+// The pictures
+
+struct Kind {
+  const char* file;
+  app::ReportSection section;
+  const char* title;
+  const char* caption;
+  bool (*exists)(const Evaluation& evaluation);
+  void (*write)(const Picture& picture, const Evaluation& evaluation, TextWriter& out);
+};
+
+bool always(const Evaluation& /*evaluation*/) { return true; }
+
+bool has_points(const Evaluation& evaluation) {
+  return evaluation.source() == app::Source::kPoints;
+}
+
+bool has_histogram(const Evaluation& evaluation) {
+  return evaluation.has_monte_carlo() &&
+         evaluation.monte_carlo().result().maximum > evaluation.monte_carlo().result().minimum;
+}
+
+bool has_trend(const Evaluation& evaluation) { return !evaluation.trend_points().empty(); }
+
+constexpr Kind kKinds[] = {
+    {kPictureFiles[0], app::ReportSection::kFit, "frequency response",
+     "Left: the measured points and the fitted model. Right: how far the points are from the "
+     "model. With a good fit most bars cross the dashed line and what remains has no shape; a "
+     "bow, a step or a resonance there is what the model does not know of.",
+     has_points, write_frequency_response},
+    {kPictureFiles[1], app::ReportSection::kErrorSystem, "impulse responses",
+     "The error system k is the sensor's response less that of the reference filter. From where "
+     "it has settled on, a longer signal adds little that is new.",
+     always, write_impulse_response},
+    {kPictureFiles[2], app::ReportSection::kEnergy, "the worst signal found",
+     "Above: the signal within ±a with the largest E that was found; it only ever switches between "
+     "the limits. Below: its error, the sensor's output less that of the reference filter.",
+     always, write_signal},
+    {kPictureFiles[3], app::ReportSection::kMonteCarlo, "energy within the uncertainties",
+     "How often the Monte Carlo trials came to which energy. The dark part is within the coverage "
+     "interval.",
+     has_histogram, write_histogram},
+    {kPictureFiles[4], app::ReportSection::kTrend, "energy over the length of the signal",
+     "The largest energy for signals of different lengths, and the straight line through them. "
+     "The triangle is above every signal of any shape of its length.",
+     has_trend, write_trend},
+};
+
+std::string name_of_device(const app::Labels& labels) {
+  return words_of([&](TextWriter& out) {
+    out.one_line(labels.device != nullptr ? labels.device : "Accelerometer", kNameShown);
+  });
+}
+
+}  // namespace
+
+std::vector<Picture> pictures_of(const Evaluation& evaluation, const app::ReportContext& context) {
+  std::vector<Picture> pictures;
+  const std::string name = name_of_device(context.labels);
+  for (const Kind& kind : kKinds) {
+    if (kind.exists(evaluation)) {
+      pictures.push_back(
+          {kind.file, kind.section, name + ": " + kind.title, kind.caption, context.in_g});
+    }
+  }
+  return pictures;
+}
+
+void write_picture_script(const std::vector<Picture>& pictures, const Evaluation& evaluation,
+                          TextWriter& out) {
+  out.text("# Draws the pictures of a report from the tables beside it: gnuplot ");
+  out.text(kPictureScript).line();
+  out.text("set encoding utf8\n");
+  for (const Picture& picture : pictures) {
+    for (const Kind& kind : kKinds) {
+      if (std::string_view(kind.file) == picture.file) {
+        kind.write(picture, evaluation, out);
+      }
+    }
+  }
+  out.text("\nunset output\n");
+}
+
+bool has_start_table(const Evaluation& evaluation) {
+  const double row_s = end_of_table_s(evaluation) / static_cast<double>(app::kResponseRows - 1);
+  return row_s * fastest_hz(evaluation) * kLeastRowsPerPeriod > 1.0 ||
+         row_s * kLeastRows > shown_s(evaluation);
+}
+
+void write_start_table(const Evaluation& evaluation, TextWriter& out) {
+  out.text("t_s,k,ka,kf\n");
+  const ModalModel& model = evaluation.model();
+  const double end_s = end_of_picture_s(evaluation);
+  for (std::size_t row = 0; row < app::kResponseRows; ++row) {
+    const double time_s =
+        end_s * (static_cast<double>(row) / static_cast<double>(app::kResponseRows - 1));
+    out.exact(time_s).text(",").exact(model.impulse_response(time_s)).text(",");
+    out.exact(model.device_impulse_response(time_s)).text(",");
+    out.exact(model.filter_impulse_response(time_s)).line();
+  }
+}
+
+}  // namespace emax::host

@@ -1,0 +1,210 @@
+// `emax report`.
+#include "desk/report/report_command.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report.hpp"
+#include "emax/identify/frequency_response.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/cli/console_progress.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/stop_request.hpp"
+#include "desk/files/output_files.hpp"
+#include "desk/files/points_file.hpp"
+#include "desk/files/report_files.hpp"
+#include "desk/files/text_file.hpp"
+#include "desk/report/bench_job.hpp"
+
+namespace emax::host {
+
+namespace {
+
+constexpr std::uint32_t kMaxStoredTrials = 10'000'000;
+
+// Sentences of the library, with what they add in brackets, as the middle of a line: small letters
+// at the start, no full stops.
+std::string in_line(const std::string& text) {
+  std::string line;
+  bool starts = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool ends = i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == ')';
+    if (c == '.' && ends) {
+      continue;
+    }
+    line += starts ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
+    starts = text.compare(i, 5, "(The ") == 0;
+  }
+  return line;
+}
+
+// What has to be changed: an option, or the device.
+std::string culprit(const app::Failure& failure, const ReportOptions& options) {
+  const bool is_search =
+      failure.status == Status::kTooManyCells || failure.status == Status::kTooManySwitches;
+  if (is_search && failure.stage == app::Stage::kTrend) {
+    return "--trend";
+  }
+  if (is_search) {
+    return "--time";
+  }
+  if (options.measures()) {
+    return "measurement";
+  }
+  return options.points_path.empty() ? "--model" : name_of_input(options.points_path);
+}
+
+Problem describe(const app::Evaluation& evaluation, const ReportOptions& options) {
+  const app::Failure& failure = evaluation.failure();
+  const bool is_inverted = failure.status == Status::kInvertedPolarity;
+  StringSink sentence;
+  app::TextWriter writer(sentence);
+  write_failure(evaluation, writer);
+  const std::string who = culprit(failure, options);
+  const std::string line =
+      who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
+  // What the bench gave is no input of the user's.
+  return who == "measurement" ? fault(line) : bad_input(line);
+}
+
+// What a report is written from.
+struct Results {
+  const app::Evaluation& evaluation;
+  const app::ReportContext& context;
+};
+
+Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evaluation& evaluation,
+              app::EvaluationWorkspace& workspace) {
+  if (!options.model_text.empty()) {
+    const Status status = evaluation.start_from_model(options.device, options.settings, workspace);
+    return status == Status::kOk ? Problem{} : describe(evaluation, options);
+  }
+  static FrequencyResponse points;
+  if (options.measures()) {
+    (void)sweep.copy_to(points);  // A sweep that is done has points that a table takes.
+  } else if (Problem problem =
+                 read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+    return problem;
+  }
+  const Status status = evaluation.start_from_points(points, options.settings, workspace);
+  return status == Status::kOk ? Problem{} : describe(evaluation, options);
+}
+
+// Runs an evaluation that has been started, with room for the trials' values, so that each is
+// computed once.
+Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evaluation& evaluation,
+            app::EvaluationWorkspace& workspace) {
+  const std::uint32_t trials =
+      options.settings.adaptive ? kMaxStoredTrials : options.settings.trials;
+  const std::size_t room = std::min(trials, kMaxStoredTrials);
+  const std::unique_ptr<double[]> store(new (std::nothrow) double[room]);
+  if (store != nullptr) {
+    evaluation.lend_trial_store(Span<double>(store.get(), room));
+  }
+  while (!evaluation.done()) {
+    if (stop_requested()) {
+      return stopped();
+    }
+    progress.show(name_of(evaluation.stage()), evaluation.progress());
+    evaluation.step(workspace);
+  }
+  evaluation.lend_trial_store({});
+  return evaluation.status() == Status::kOk ? Problem{} : describe(evaluation, options);
+}
+
+// Everything from the measurement to the results.
+Problem work(const ReportOptions& options, BenchJob& bench, app::Evaluation& evaluation) {
+  static app::EvaluationWorkspace workspace;
+  ConsoleProgress progress;
+  Problem problem = options.measures() ? bench.run(options, progress) : Problem{};
+  if (!problem) {
+    problem = start(options, bench.sweep(), evaluation, workspace);
+  }
+  return problem ? problem : run(options, progress, evaluation, workspace);
+}
+
+void write_text(const Results& results, app::TextWriter& out) {
+  write_report(results.evaluation, results.context, out);
+}
+
+void write_results(const Results& results, app::TextWriter& out) {
+  write_json(results.evaluation, results.context, out);
+}
+
+template <typename Write>
+Problem print(Write write) {
+  FileSink sink(stdout);
+  app::TextWriter out(sink);
+  write(out);
+  return check_output(sink);
+}
+
+// The files and the text of a measurement that has led to no result: what there is.
+Problem keep(const app::ReportContext& context, const app::Evaluation* refused, bool json,
+             OutputFiles* files) {
+  if (Problem problem =
+          files != nullptr ? write_fault_files(context, refused, *files) : Problem{}) {
+    return problem;
+  }
+  return json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
+              : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+}
+
+// The fault, and in the same line what became of what there is.
+Problem keep_and_report(const Problem& fault, const Results& results, bool json,
+                        OutputFiles* files) {
+  const bool was_swept = results.context.measurement->sweep.status() == Status::kOk;
+  const app::Evaluation* refused = was_swept ? &results.evaluation : nullptr;
+  Problem problem = fault;
+  if (const Problem kept = keep(results.context, refused, json, files)) {
+    problem.line += kept.line.empty() ? "" : "; " + kept.line;
+  }
+  return problem;
+}
+
+}  // namespace
+
+Problem run_report(Span<const std::string_view> arguments) {
+  ReportOptions options;
+  if (Problem problem = parse_report_options(arguments, options)) {
+    return problem;
+  }
+  OutputFiles out_files;
+  OutputFiles* files = options.out_directory.empty() ? nullptr : &out_files;
+  if (Problem problem = files != nullptr ? files->open(options.out_directory) : Problem{}) {
+    return problem;
+  }
+  static BenchJob bench;
+  static app::Evaluation evaluation;
+  const Problem problem_of_work = work(options, bench, evaluation);
+  const std::string points_name = name_of_input(options.points_path);
+  const app::Measurement measurement = bench.measurement();
+  const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
+                                      options.measures() ? &measurement : nullptr, options.labels(),
+                                      options.in_g};
+  const Results results = {evaluation, context};
+  if (problem_of_work) {
+    const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
+    return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
+  }
+  Problem remark;
+  if (Problem problem =
+          files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{}) {
+    return problem;
+  }
+  const Problem problem = options.json
+                              ? print([&](app::TextWriter& out) { write_results(results, out); })
+                              : print([&](app::TextWriter& out) { write_text(results, out); });
+  return problem ? problem : remark;
+}
+
+}  // namespace emax::host

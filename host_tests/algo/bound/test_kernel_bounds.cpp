@@ -1,0 +1,126 @@
+// Bounds of the kernel against quadrature by hand, and energies of pulses.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "emax/bound/kernel_bounds.hpp"
+
+#include "support/paper_device.hpp"
+
+namespace emax {
+namespace {
+
+using test::paper_model;
+
+/// phi(t, s), the integral of k(u - t) k(u - s) over u up to T, by Simpson's rule.
+double phi_of(const ModalModel& model, double t_s, double s_s, double duration_s) {
+  const double start_s = std::fmax(t_s, s_s);
+  constexpr int kIntervals = 400;
+  const double h = (duration_s - start_s) / kIntervals;
+  double sum = 0.0;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double u_s = start_s + i * h;
+    const double weight = i == 0 || i == kIntervals ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+    sum += weight * model.impulse_response(u_s - t_s) * model.impulse_response(u_s - s_s);
+  }
+  return sum * h / 3.0;
+}
+
+/// The integral over s of |d^n phi / dt^n|, by the midpoint rule and central differences in t.
+double by_hand(const ModalModel& model, int order, double t_s, double duration_s) {
+  constexpr int kPoints = 400;
+  const double d = 2e-7;
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double s_s = (i + 0.5) * duration_s / kPoints;
+    const auto phi = [&](double shift_s) { return phi_of(model, t_s + shift_s, s_s, duration_s); };
+    const double value = order == 0   ? phi(0.0)
+                         : order == 1 ? (phi(d) - phi(-d)) / (2.0 * d)
+                                      : (phi(d) - 2.0 * phi(0.0) + phi(-d)) / (d * d);
+    sum += std::fabs(value);
+  }
+  return sum * duration_s / kPoints;
+}
+
+class Bounds {
+ public:
+  Bounds(const ModalModel& model, double duration_s)
+      : numbers_(kernel_bounds_numbers(mesh_intervals(model, duration_s))) {
+    EXPECT_EQ(bounds.start(model, duration_s, {numbers_.data(), numbers_.size()}), Status::kOk);
+    while (!bounds.done()) {
+      bounds.step();
+    }
+  }
+  KernelBounds bounds{};
+
+ private:
+  std::vector<double> numbers_;
+};
+
+TEST(KernelBounds, AreJustAboveTheIntegrals) {
+  for (const int order : {2, 5, 10}) {
+    ModalModel model{};
+    ASSERT_EQ(model.set(test::kPaperDevice, {order, 1000.0, 0.9}, Criterion::kIntegralSquareError),
+              Status::kOk);
+    const double duration_s = 0.7e-3;
+    const Bounds found(model, duration_s);
+    for (const double t_s : {0.03e-3, 0.2e-3, 0.41e-3, 0.6e-3}) {
+      for (const int n : {0, 1, 2}) {
+        const double integral = by_hand(model, n, t_s, duration_s);
+        const double bound = found.bounds.bound(n, t_s, t_s);
+        // The midpoint rule is good to about 1e-4, and 1e-3 at the kinks of n = 2.
+        EXPECT_GT(bound, integral * (n == 2 ? 0.997 : 0.9995)) << order << ' ' << n << ' ' << t_s;
+        EXPECT_LT(bound, integral * 1.05) << order << ' ' << n << ' ' << t_s;
+      }
+    }
+  }
+}
+
+TEST(KernelBounds, OfAnIntervalAreTheLargestInside) {
+  const ModalModel model = paper_model();
+  const Bounds found(model, 1e-3);
+  double largest = 0.0;
+  for (double t_s = 0.2e-3; t_s <= 0.3e-3; t_s += 1e-6) {
+    largest = std::fmax(largest, found.bounds.bound(1, t_s, t_s));
+  }
+  EXPECT_LE(largest, found.bounds.bound(1, 0.2e-3, 0.3e-3) * (1.0 + 1e-12));
+  // The largest of a few mesh points more at both ends.
+  EXPECT_NEAR(largest / found.bounds.bound(1, 0.2e-3, 0.3e-3), 1.0, 0.01);
+}
+
+TEST(KernelBounds, RefuseWhatTheyDoNotHoldFor) {
+  std::vector<double> numbers(kernel_bounds_numbers(4096));
+  const Span<double> memory(numbers.data(), numbers.size());
+  KernelBounds bounds{};
+  const ModalModel difference = paper_model(Criterion::kEnergyDifference);
+  EXPECT_EQ(bounds.start(difference, 1e-3, memory), Status::kInvalidArgument);
+  EXPECT_EQ(bounds.start(paper_model(), 0.0, memory), Status::kInvalidArgument);
+  EXPECT_EQ(bounds.start(paper_model(), 10.0, memory), Status::kTooManyCells);
+  EXPECT_EQ(bounds.start(paper_model(), 1e-3, memory.first(100)), Status::kBufferTooSmall);
+  ModalModel first_order{};
+  ASSERT_EQ(first_order.set(test::kPaperDevice, {1, 1000.0, 1.0}, Criterion::kIntegralSquareError),
+            Status::kOk);
+  EXPECT_EQ(bounds.start(first_order, 1e-3, memory), Status::kInvalidOrder);
+}
+
+TEST(PulseEnergy, IsTheIntegralOfTheSquaredResponse) {
+  const ModalModel model = paper_model();
+  for (const double width_s : {2e-6, 30e-6, 90e-6, 400e-6}) {
+    for (const double left_s : {400e-6, 1.5e-3}) {
+      constexpr int kIntervals = 4000;  // Simpson's error: (width / 30)^4 of the whole, 1e-6.
+      const double h = left_s / kIntervals;
+      double sum = 0.0;
+      for (int i = 0; i <= kIntervals; ++i) {
+        const double u_s = i * h;
+        const double before = u_s > width_s ? model.step_response(u_s - width_s) : 0.0;
+        const double y = model.step_response(u_s) - before;
+        sum += (i == 0 || i == kIntervals ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0)) * y * y;
+      }
+      const double found = pulse_energy(model, left_s, width_s);
+      EXPECT_NEAR(found / (sum * h / 3.0), 1.0, 1e-5) << width_s << ' ' << left_s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace emax

@@ -1,0 +1,622 @@
+// The commands of the instrument: each with its answer, its wrong input, and what it makes stale.
+#include <cmath>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/instrument/instrument.hpp"
+#include "emax/app/report/report.hpp"
+
+#include "support/evaluations.hpp"
+#include "support/instrument_bench.hpp"
+#include "support/string_sink.hpp"
+
+namespace emax {
+namespace {
+
+using test::InstrumentBench;
+
+constexpr char kPaperModel[] = "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004";
+
+std::string error_of(InstrumentBench& i, const std::string& command) {
+  EXPECT_EQ(i.ask(command), "");
+  const std::string error = i.ask("SYST:ERR?");
+  EXPECT_EQ(i.ask("SYST:ERR?"), "0,\"No error\"") << "after " << error;
+  return error;
+}
+
+TEST(Instrument, SaysWhatItIs) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("*IDN?"), "emax,test,4711,0.1.0");
+  EXPECT_EQ(i.ask("SYST:VERS?"), "1999.0");
+  EXPECT_EQ(i.ask("*ESR?"), "128");  // Power on.
+  EXPECT_EQ(i.ask("*TST?"), "0");
+  EXPECT_EQ(i.ask("DIAG:MEM?"), "0,0,0");
+  EXPECT_EQ(i.ask("SYST:PROG?"), "100,\"idle\"");
+  EXPECT_EQ(i.errors(), "");
+}
+
+// Each setting: command, value to set, its answer, the default's answer, and a value that is
+// refused. Defaults are those of the options of `emax report`.
+struct SettingCase {
+  const char* command;
+  const char* value;
+  const char* answer;
+  const char* by_default;
+  const char* refused;
+};
+
+constexpr SettingCase kSettings[] = {
+    {"CALC:FILT:ORD", "15", "15", "10", "16"},
+    {"CALC:FILT:FREQ", "2 KHZ", "2000", "1000", "0"},
+    {"CALC:FILT:GAIN", "1.5", "1.5", "AUTO", "-1"},
+    {"CALC:FILT:GAIN", "TRACK", "TRAC", "AUTO", "MANUAL"},
+    {"CALC:ENER:TIME", "4ms", "0.0040000000000000001", "0.002", "0"},
+    {"CALC:ENER:LIM", "2", "2", "AUTO", "0"},
+    {"CALC:ENER:CRIT", "DIFFERENCE", "DIFF", "ISE", "BOTH"},
+    {"CALC:ENER:METH", "pap", "PAP", "BEST", "WORST"},
+    {"CALC:ENER:STEP", "4US", "3.9999999999999998e-06", "1.9999999999999999e-06", "-1US"},
+    {"CALC:ENER:ITER", "31", "31", "30", "1001"},
+    {"CALC:MCAR:TRI", "5000", "5000", "200000", "999"},
+    {"CALC:MCAR:SEED", "1,2,3,4", "1,2,3,4", "123456789,345678901,567890123,789012345", "0,1,1,1"},
+    {"CALC:MCAR:PROB", "0.99", "0.98999999999999999", "0.94999999999999996", "1"},
+    {"CALC:MCAR:DIST", "NORM", "NORM", "BOX", "LOG"},
+    {"CALC:MCAR:ADAP", "ON", "1", "0", "MAYBE"},
+    {"CALC:MCAR:BIRG", "1", "1", "0", "MAYBE"},
+    {"CALC:MCAR:GEN", "WH1982", "WH1982", "WH2006", "WH2007"},
+    {"SENS:REF:SENS", "0.2,1", "0.20000000000000001,1", "0.10000000000000001,0.5", "0.1,51"},
+    {"SWE:FREQ", "100,1KHZ,5e3", "100,1000,5000", "200,1000,2500,4000,5500", "1000,100,200"},
+    {"SWE:CYCL", "5", "5", "3", "0"},
+    {"SWE:SETT", "20 MS", "0.02", "0.01", "11"},
+    {"SOUR:LEV", "2", "2", "1", "0"},
+    {"SOUR:LIM", "30 M/S2", "30", "20", "0"},
+    {"SOUR:SLEW", "200000", "200000", "100000", "1"},
+};
+
+TEST(Instrument, SetsAnswersAndRefusesEachSetting) {
+  for (const SettingCase& one : kSettings) {
+    SCOPED_TRACE(one.command);
+    InstrumentBench i;
+    const std::string command = one.command;
+    EXPECT_EQ(i.ask(command + "?"), one.by_default);
+    EXPECT_EQ(i.ask(command + " " + one.value), "");
+    EXPECT_EQ(i.ask(command + "?"), one.answer);
+    const std::string error = error_of(i, command + " " + one.refused);
+    EXPECT_EQ(error.substr(0, 1), "-") << error;
+    EXPECT_EQ(i.ask(command + "?"), one.answer) << "a refused value changes nothing";
+    EXPECT_EQ(i.ask("*RST"), "");
+    EXPECT_EQ(i.ask(command + "?"), one.by_default);
+    EXPECT_EQ(i.errors(), "");
+  }
+}
+
+TEST(Instrument, KnowsTheLimitsOfEverySettingThatIsANumber) {
+  InstrumentBench i;
+  for (const auto& row : app::Instrument::commands()) {
+    if ((row.flags & app::scpi::kQueryLimits) == 0) {
+      continue;
+    }
+    SCOPED_TRACE(row.pattern);
+    std::string command;
+    for (const char* c = row.pattern; *c != '\0'; ++c) {
+      command += *c == '[' || *c == ']' ? "" : std::string(1, *c);
+    }
+    const std::vector<double> least = i.numbers(command + "? MIN");
+    const std::vector<double> most = i.numbers(command + "? MAX");
+    const std::string by_default = i.ask(command + "? DEF");
+    ASSERT_EQ(least.size() + most.size(), 2U);
+    EXPECT_LT(least[0], most[0]);
+    EXPECT_EQ(i.ask(command + "?"), by_default);
+    if (by_default != "AUTO") {
+      EXPECT_LT(least[0], std::stod(by_default));
+      EXPECT_LT(std::stod(by_default), most[0]);
+    }
+    EXPECT_EQ(i.ask(command + " MAX;:" + command + " DEF;:" + command + "?"), by_default);
+    // A maximum may be more than other settings leave room for.
+    EXPECT_EQ(i.errors().find("-1"), std::string::npos);
+  }
+}
+
+TEST(Instrument, TakesTheDefaultsOfTheSweepFromTheBoard) {
+  InstrumentBench i;
+  i.sweep.level_mps2 = 3.0;
+  i.sweep.settle_s = 0.5;
+  i.sweep.cycles = 7;
+  i.sweep.reference.sensitivity[0] = 0.25;
+  EXPECT_EQ(
+      i.ask("SOUR:LEV DEF;LEV?;LEV? DEF;:SWE:SETT DEF;SETT?;CYCL DEF;CYCL?;:REF:SENS DEF;SENS?"),
+      "3;3;0.5;7;0.25,0.5");
+  EXPECT_EQ(i.ask("*RST;:SOUR:LEV?;:SWE:CYCL?"), "3;7");
+}
+
+TEST(Instrument, NamesTheSettingThatIsInConflict) {
+  InstrumentBench i;
+  EXPECT_EQ(error_of(i, "SOUR:LEV 21"),
+            "-221,\"Settings conflict;acceleration limit: at least the level, in m/s^2\"");
+  EXPECT_EQ(
+      error_of(i, "SOUR:SLEW 1"),
+      "-221,\"Settings conflict;slew: enough to lead the drive limit to zero within 256 frames, "
+      "in V/s\"");
+  EXPECT_EQ(error_of(i, "CALC:MCAR:PROB MIN"),
+            "-221,\"Settings conflict;probability: larger, so that its share of the trials is at "
+            "least one of them\"");
+  EXPECT_EQ(error_of(i, "CALC:MCAR:SEED 4294967295,1,1,1"),
+            "-221,\"Settings conflict;seed: four whole numbers from 1 to 2147483578, 2147483542, "
+            "2147483422 and 2147483122\"");
+  EXPECT_EQ(error_of(i, std::string(kPaperModel) + ";ENER:METH PAP;TIME 16ms;:CALC:MCAR?"),
+            "-221,\"Settings conflict;The trials of the paper's method have no room for so many "
+            "cells; shorten the time, take a longer step, or give no uncertainties.\"");
+}
+
+TEST(Instrument, TakesUnitsWhereverANumberHasOne) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("CALC:MOD 1,4KHZ,0.3,0.01,10HZ,0.001;MOD?").substr(0, 7), "1,4000,");
+  EXPECT_EQ(i.ask("TRAC:FRES:DATA 1KHZ,1,-10DEG,0.01,500 MDEG"), "");
+  const std::vector<double> point = i.numbers("FETC:FRES?");
+  ASSERT_EQ(point.size(), 6U);
+  EXPECT_EQ(point[1], 1000.0);
+  EXPECT_NEAR(point[3], -10.0, 1e-12);  // Through radians and back.
+  EXPECT_NEAR(point[5], 0.25, 1e-12);
+  EXPECT_EQ(error_of(i, "CALC:MOD 1V,4000,0.3"), "-138,\"Suffix not allowed;1V\"");
+}
+
+// A query that fails answers nothing, not the part before the failure.
+TEST(Instrument, ChecksAllTimesBeforeItAnswersTheFirst) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  EXPECT_EQ(error_of(i, "CALC:IMP? 1ms,-1"), "-222,\"Data out of range;-1\"");
+  EXPECT_EQ(error_of(i, "CALC:IMP? 1ms,2ms,"), "-109,\"Missing parameter\"");
+  EXPECT_EQ(i.numbers("CALC:IMP? 1ms,2ms").size(), 2U);
+}
+
+TEST(Instrument, SaysThatTheAbsoluteErrorIsOutOfReach) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  const std::vector<double> at_one_second = i.numbers("CALC:ENER:TIME 1;:CALC:AERR?");
+  ASSERT_EQ(at_one_second.size(), 1U);
+  EXPECT_GT(at_one_second[0], 1.0);
+  EXPECT_EQ(error_of(i, "CALC:ENER:TIME 100;:CALC:AERR?"),
+            "-221,\"Settings conflict;k moves too often for so long a T: shorten it\"");
+}
+
+// A peer leaves in the moment in which its fixed point is done: the next one asks for another.
+TEST(Instrument, DoesNotAnswerTheFixedPointOfAnother) {
+  InstrumentBench i;
+  const std::string mine = ";:CALC:FILT:ORD 5;:CALC:ENER:FPA?";
+  const std::string answer = i.ask(kPaperModel + mine);
+  int polls = 0;
+  const auto ask_for_another = [&i] {
+    (void)i.ask("CALC:FILT:ORD 10;:CALC:MOD?");
+    i.send("CALC:ENER:FPA?");
+  };
+  for (ask_for_another(); !i.instrument->is_settled() || polls < 2; ++polls) {
+    i.poll();
+  }
+  (void)i.console.receive();
+  for (int after = 1; after < polls; ++after) {
+    ask_for_another();
+    i.poll(after);
+    i.console.connect(false);
+    i.poll();
+    i.console.connect(true);
+    (void)i.console.receive();
+    ASSERT_EQ(i.ask(kPaperModel + mine), answer) << "after " << after << " of " << polls;
+  }
+}
+
+// The table is what DESIGN promises to others who script against it.
+TEST(Instrument, HasEveryCommandInBothForms) {
+  InstrumentBench i;
+  for (const auto& row : app::Instrument::commands()) {
+    SCOPED_TRACE(row.pattern);
+    std::string long_form;
+    for (const char* c = row.pattern; *c != '\0'; ++c) {
+      long_form += *c == '[' || *c == ']' ? "" : std::string(1, *c);
+    }
+    std::string short_form;
+    for (const char c : long_form) {
+      short_form += c >= 'a' && c <= 'z' ? "" : std::string(1, c);
+    }
+    for (const std::string& form : {long_form, short_form}) {
+      // One parameter too many tells a known header from an unknown one without any effect.
+      std::string wrong = form + (row.has_set() ? "" : "?");
+      wrong += " 'a','b','c','d','e','f','g','h'";
+      (void)i.ask(wrong);
+      const std::string errors = i.errors();
+      EXPECT_EQ(errors.find("-113"), std::string::npos) << errors;
+    }
+  }
+}
+
+TEST(Instrument, NamesWhatIsMissing) {
+  InstrumentBench i;
+  const char* const queries[] = {
+      "CALC:ENER?", "CALC:MCAR?",  "CALC:TREN? 1ms,2ms", "CALC:REP?",       "CALC:AERR?",
+      "CALC:SETT?", "CALC:IMP? 0", "CALC:ENER:FPA?",     "CALC:ENER:EVAL?", "CALC:MOD?"};
+  for (const char* query : queries) {
+    EXPECT_EQ(error_of(i, query), "-230,\"Data corrupt or stale;no device: CALC:MOD, or INIT:SWE\"")
+        << query;
+  }
+  const char* const of_points[] = {"FETC:FRES?", "CALC:IDEN?", "CALC:IDEN:COV?"};
+  for (const char* query : of_points) {
+    EXPECT_EQ(error_of(i, query),
+              "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"")
+        << query;
+  }
+  EXPECT_EQ(error_of(i, "INIT:ENER"),
+            "-230,\"Data corrupt or stale;no device: CALC:MOD, or INIT:SWE\"");
+  EXPECT_EQ(i.ask("CALC:MOD 1,4000,0.3"), "");
+  EXPECT_EQ(error_of(i, "CALC:MCAR?"),
+            "-230,\"Data corrupt or stale;no uncertainties: CALC:MOD with uS,..\"");
+  EXPECT_EQ(error_of(i, "INIT:MCAR;*WAI"),
+            "-230,\"Data corrupt or stale;no uncertainties: CALC:MOD with uS,..\"");
+}
+
+// The paper's device: the numbers that DESIGN.md lists, from enumeration and high precision.
+TEST(Instrument, AnswersWhatThePapersDeviceGives) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  EXPECT_EQ(i.ask("CALC:MOD?"),
+            "1.0369999999999999,4073,0.31819999999999998,"
+            "0.0030000000000000001,6,0.00040000000000000002");
+  const std::vector<double> energy = i.numbers("CALC:ENER?");
+  ASSERT_EQ(energy.size(), 5U);
+  EXPECT_NEAR(energy[0], 0.005115251359876, 1e-15);
+  EXPECT_NEAR(energy[1], 0.005115251359876 / (1.037 * 1.037 * 0.002), 1e-12);
+  EXPECT_GT(energy[2], 0.005134);  // No bound is below the proven one.
+  EXPECT_LT(energy[2], 0.00587);
+  EXPECT_EQ(energy[3], 1.0);
+  EXPECT_NEAR(energy[4], 1.0474909417558e-3, 1e-12);
+  EXPECT_NEAR(i.numbers("CALC:ENER:EVAL?")[0], 0.00110693771864, 1e-14);
+  EXPECT_NEAR(i.numbers("CALC:ENER:EVAL? 0.68ms,1.49ms")[0], 0.00399063106536, 1e-14);
+  EXPECT_NEAR(i.numbers("CALC:SETT?")[0], 1.453582e-3, 1e-9);
+  const std::vector<double> k = i.numbers("CALC:IMP? 10us,50us,100us,500us,1ms,2ms");
+  const double expected[] = {6199.1624,   17451.1509,  8133.60891,
+                             -259.559968, -1744.33268, 424.175752};
+  ASSERT_EQ(k.size(), 6U);
+  for (std::size_t n = 0; n < 6; ++n) {
+    EXPECT_NEAR(k[n], expected[n], 1e-4);  // The table's last digit.
+  }
+  const std::vector<double> fixed_point = i.numbers("CALC:ENER:FPA?");
+  ASSERT_EQ(fixed_point.size(), 8U);
+  EXPECT_EQ(fixed_point[0], 6.0);
+  EXPECT_NEAR(fixed_point[1], 0.00381585783775, 1e-14);
+  EXPECT_NEAR(fixed_point[7], 0.00448654991209, 1e-14);
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(Instrument, FollowsTheFixedPointAsFarAsItMay) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(std::string(kPaperModel) + ";:CALC:ENER:TIME 10ms"), "");
+  const std::vector<double> energies = i.numbers("CALC:ENER:FPA?");
+  ASSERT_EQ(energies.size(), 32U);  // The number of iterations, and E_0 to E_30.
+  EXPECT_EQ(energies[0], 30.0);
+  EXPECT_NEAR(energies[31], 0.0375854265552, 1e-12);
+  for (std::size_t n = 2; n < energies.size(); ++n) {
+    EXPECT_GE(energies[n], energies[n - 1]) << "integral-square errors never fall";
+  }
+  ASSERT_EQ(i.ask("CALC:ENER:ITER 2"), "");
+  const std::vector<double> short_run = i.numbers("CALC:ENER:FPA?");
+  ASSERT_EQ(short_run.size(), 4U);
+  EXPECT_EQ(short_run[3], energies[3]);
+  EXPECT_EQ(error_of(i, "CALC:ENER:STEP 1us;:CALC:ENER:FPA?"),
+            "-221,\"Settings conflict;T/step > 8192: shorten T or longer STEP\"");
+}
+
+TEST(Instrument, AnswersTheTrialsAndTheTrend) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 2000"), "");
+  const std::vector<double> trials = i.numbers("CALC:MCAR?");
+  ASSERT_EQ(trials.size(), 13U);
+  EXPECT_EQ(trials[0], 2000.0);
+  // Over the box the maximum is at a corner, 0.0051346992, which random draws only come near.
+  EXPECT_GT(trials[1], 0.00513);
+  EXPECT_LT(trials[1], 0.0051346993);
+  EXPECT_NEAR(trials[2], 1.040, 0.0005);
+  EXPECT_LT(trials[5], 2000.0);
+  EXPECT_NEAR(trials[7], 1.1e-5, 1e-6);
+  EXPECT_LT(trials[8], trials[6]);
+  EXPECT_LT(trials[6], trials[9]);
+  EXPECT_LE(trials[11] - trials[10], (trials[9] - trials[8]) * (1.0 + 1e-12));
+  EXPECT_EQ(trials[12], 0.0);
+  const std::vector<double> trend = i.numbers("CALC:TREN? 2ms,10ms");
+  ASSERT_EQ(trend.size(), 4U);
+  EXPECT_NEAR(trend[2], 0.005115251359876, 1e-15);
+  EXPECT_NEAR(trend[3], 0.03809122131476, 1e-13);
+  EXPECT_NEAR(trend[0], (trend[3] - trend[2]) / 0.008, 1e-9);
+  EXPECT_EQ(i.numbers("CALC:TREN?"), trend);
+  const std::vector<double> shorter = i.numbers("CALC:TREN? 2ms,4ms");
+  ASSERT_EQ(shorter.size(), 4U);
+  EXPECT_EQ(shorter[2], trend[2]);
+  EXPECT_LT(shorter[3], trend[3]);
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(Instrument, DrawsThePublishedNumbersAndGoesOnFromThere) {
+  InstrumentBench i;
+  const std::vector<double> first = i.numbers("DIAG:RAND? 3");
+  ASSERT_EQ(first.size(), 3U);
+  EXPECT_NEAR(first[0], 0.75099757068263173, 1e-15);
+  EXPECT_NEAR(first[2], 0.32888922619308092, 1e-15);
+  EXPECT_NEAR(i.numbers("DIAG:RAND? 1")[0], 0.11645956405699120, 1e-15);
+  ASSERT_EQ(i.ask("CALC:MCAR:SEED 123456789,345678901,567890123,789012345"), "");
+  const std::vector<double> many = i.numbers("DIAG:RAND? 1000");
+  ASSERT_EQ(many.size(), 1000U);
+  EXPECT_NEAR(many[99], 0.73211169856915226, 1e-15);
+  EXPECT_NEAR(many[999], 0.71003348258806565, 1e-15);
+  EXPECT_EQ(error_of(i, "DIAG:RAND? 1000001"), "-222,\"Data out of range;1000001\"");
+}
+
+std::string table1_commands() {
+  std::string commands;
+  std::ifstream file(test::table1_path());
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    commands += "TRAC:FRES:DATA " + line + "\n";
+  }
+  return commands;
+}
+
+std::vector<double> first_line_of_table1() {
+  std::ifstream file(test::table1_path());
+  std::string line;
+  std::getline(file, line);
+  std::vector<double> numbers(5);
+  char comma = ',';
+  for (double& number : numbers) {
+    file >> number >> comma;
+  }
+  return numbers;
+}
+
+// DESIGN.md: S = 1.0079, f0 = 4057.3 Hz, beta = 0.2462, chi-square 8595 for 81.
+TEST(Instrument, IdentifiesPointsFromElsewhere) {
+  InstrumentBench i;
+  i.send(table1_commands());
+  ASSERT_TRUE(i.settle());
+  EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "42");
+  const std::vector<double> device = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(device.size(), 8U);
+  EXPECT_NEAR(device[0], 1.00791, 5e-6);
+  EXPECT_NEAR(device[1], 4057.25, 5e-3);
+  EXPECT_NEAR(device[2], 0.24618, 5e-6);
+  EXPECT_NEAR(device[3], 0.00113, 5e-6);
+  EXPECT_NEAR(device[4], 2.85, 5e-3);
+  EXPECT_NEAR(device[6], 8595.0, 0.5);
+  EXPECT_EQ(device[7], 81.0);
+  const std::vector<double> covariance = i.numbers("CALC:IDEN:COV?");
+  ASSERT_EQ(covariance.size(), 9U);
+  EXPECT_NEAR(std::sqrt(covariance[4]), device[4], 1e-12);
+  EXPECT_EQ(covariance[1], covariance[3]);
+  // Such a fit is questionable.
+  EXPECT_EQ(i.ask("STAT:QUES:COND?"), "256");
+  const std::vector<double> points = i.numbers("FETC:FRES?");
+  ASSERT_EQ(points.size(), 1U + 42 * 5);
+  const std::vector<double> first = first_line_of_table1();
+  EXPECT_EQ(points[1], first[0]);
+  EXPECT_EQ(points[2], first[1]);
+  EXPECT_NEAR(points[3], first[2], 1e-12);
+  EXPECT_NEAR(points[4], first[3] / 2.0, 1e-12);  // Expanded in, standard out.
+  EXPECT_NEAR(points[5], first[4] / 2.0, 1e-12);
+}
+
+TEST(Instrument, RefusesPointsAndKeepsTheTable) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask("TRAC:FRES:DATA 100,1,0,0.01,1,200,1,-1,0.01,1"), "");
+  struct Case {
+    const char* numbers;
+    const char* error;
+  };
+  constexpr Case kCases[] = {
+      {"300,1,0,0.01", "-109,\"Missing parameter;five numbers for each point\""},
+      {"200,1,0,0.01,1", "-222,\"Data out of range;frequency not above the last one\""},
+      {"300,1,0,0,1", "-222,\"Data out of range;uncertainties must be above 0\""},
+      {"300,-1,0,0.01,1", "-222,\"Data out of range;frequency, amplitude must be above 0\""},
+      {"300,1,361,0.01,1", "-222,\"Data out of range;phase: -360 to 360 degrees\""},
+      {"300,1,0,0.01,1,250,1,0,0.01,1",
+       "-222,\"Data out of range;frequency not above the last one\""},
+  };
+  for (const Case& one : kCases) {
+    EXPECT_EQ(error_of(i, std::string("TRAC:FRES:DATA ") + one.numbers), one.error);
+    EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "2") << one.numbers;
+  }
+  EXPECT_EQ(i.ask("TRAC:FRES:CLE;POIN?"), "0");
+}
+
+TEST(Instrument, RefusesADeviceThatCannotBe) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask(kPaperModel), "");
+  for (const char* wrong : {"0,4000,0.3", "1,4000,1", "1,-1,0.3", "1,4000,0.00001"}) {
+    EXPECT_EQ(error_of(i, std::string("CALC:MOD ") + wrong),
+              "-222,\"Data out of range;S, f0 above 0, beta 0.0001 to below 1\"");
+  }
+  EXPECT_EQ(error_of(i, "CALC:MOD 1,4000,0.3,-1,0,0"),
+            "-222,\"Data out of range;uncertainties must be 0 or more\"");
+  EXPECT_EQ(error_of(i, "CALC:MOD 1,4000,0.3,0.1"),
+            "-109,\"Missing parameter;three numbers or six\"");
+  EXPECT_EQ(i.numbers("CALC:MOD?")[1], 4073.0);
+  // Parameters that only the settings or the method cannot take are the evaluation's to refuse.
+  EXPECT_EQ(error_of(i, "CALC:ENER:TIME 1;:CALC:ENER?"),
+            "-221,\"Settings conflict;T needs over 8192 cells: shorten it\"");
+  EXPECT_EQ(error_of(i, "*RST;:CALC:MOD 1,4000,0.3,1,0,0;:CALC:MCAR?"),
+            "-221,\"Settings conflict;uncertainties too large for the trials\"");
+  EXPECT_EQ(error_of(i, "CALC:MOD 1,4000,0.3;:CALC:TREN? 1ms,1"),
+            "-221,\"Settings conflict;a trend time needs over 8192 cells\"");
+}
+
+TEST(Instrument, SaysWhyPointsGiveNoDevice) {
+  struct Case {
+    const char* points;
+    const char* error;
+  };
+  constexpr Case kCases[] = {
+      {"100,1,0,0.01,1", "-230,\"Data corrupt or stale;a fit needs 3 points or more\""},
+      {"100,1,180,0.01,1,1000,1,180,0.01,1,2000,1.1,180,0.01,1",
+       "-200,\"Execution error;inverted polarity: add 180 degrees\""},
+  };
+  for (const Case& one : kCases) {
+    InstrumentBench i;
+    EXPECT_EQ(error_of(i, std::string("TRAC:FRES:DATA ") + one.points + ";:CALC:IDEN?"), one.error);
+    EXPECT_EQ(error_of(i, "CALC:ENER?"), one.error);
+  }
+}
+
+// Which results a command makes stale; a query of a stale one takes a run of its own.
+TEST(Instrument, ForgetsJustWhatAChangeTouches) {
+  struct Case {
+    const char* command;
+    bool energy;
+    bool trials;
+    bool trend;
+  };
+  constexpr Case kCases[] = {
+      {"CALC:MCAR:TRI 1001", false, true, false},
+      {"CALC:MCAR:SEED 1,2,3,4", false, true, false},
+      {"CALC:MCAR:PROB 0.9", false, true, false},
+      {"CALC:MCAR:DIST NORM", false, true, false},
+      {"CALC:MCAR:BIRG ON", false, true, false},
+      {"CALC:MCAR:GEN WH1982", false, true, false},
+      {"CALC:FILT:ORD 9", true, true, true},
+      {"CALC:FILT:FREQ 900", true, true, true},
+      {"CALC:FILT:GAIN 1", true, true, true},
+      {"CALC:ENER:TIME 2.5ms", true, true, true},
+      {"CALC:ENER:LIM 1", true, true, true},
+      {"CALC:ENER:CRIT DIFF", true, true, true},
+      {"CALC:ENER:METH PAP", true, true, true},
+      {"CALC:MOD 1,4000,0.3,0.01,1,0.001", true, true, true},
+      {"CALC:MCAR:TRI 1000", false, false, false},  // As it is.
+      {"CALC:ENER:STEP 3us", false, false, false},  // Of the other method.
+      {"CALC:ENER:ITER 20", false, false, false},
+      {"SWE:CYCL 4", false, false, false},
+      {"SOUR:LEV 0.5", false, false, false},
+      {"*CLS", false, false, false},
+  };
+  for (const Case& one : kCases) {
+    SCOPED_TRACE(one.command);
+    InstrumentBench i;
+    (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000;:CALC:TREN? 1ms,1.5ms;MCAR?");
+    ASSERT_EQ(i.ask(one.command), "");
+    const auto runs = [&i](const char* command) {
+      i.send(command);
+      i.poll(4);  // A result that is there takes no work.
+      const bool works = i.instrument->is_working();
+      EXPECT_TRUE(i.finish());
+      return works;
+    };
+    EXPECT_EQ(runs("INIT:ENER"), one.energy);
+    EXPECT_EQ(runs("INIT:TREN"), one.trend);
+    EXPECT_EQ(runs("INIT:MCAR"), one.trials);
+    EXPECT_EQ(i.errors(), "");
+  }
+}
+
+TEST(Instrument, FirstTrialsThenEnergyIsTheSameAsTheOtherWayRound) {
+  InstrumentBench a;
+  (void)a.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000");
+  const std::string trials = a.ask("CALC:MCAR?");
+  const std::string energy = a.ask("CALC:ENER?");
+  InstrumentBench b;
+  (void)b.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000");
+  EXPECT_EQ(b.ask("CALC:ENER?"), energy);
+  EXPECT_EQ(b.ask("CALC:MCAR?"), trials);
+  EXPECT_EQ(b.ask("CALC:MCAR:TRI 2000;*WAI;TRI 1000;:CALC:MCAR?"), trials);
+}
+
+TEST(Instrument, SendsTheReportAsABlock) {
+  InstrumentBench i;
+  const std::string block =
+      i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000;:CALC:TREN? 2ms,3ms;REP?");
+  const std::size_t at = block.find(";#");
+  ASSERT_NE(at, std::string::npos);
+  app::Settings settings;
+  settings.trials = 1000;
+  settings.trend_s = {0.002, 0.003};
+  settings.trend_count = 2;
+  const app::Evaluation& evaluation = test::evaluated(test::kTable2, settings);
+  test::StringSink sink;
+  app::TextWriter out(sink);
+  write_report(evaluation, app::ReportContext{}, out);
+  EXPECT_EQ(block.substr(at + 1), "#4" + std::to_string(sink.text().size()) + sink.text());
+}
+
+TEST(Instrument, KeepsSettingsInFourSlots) {
+  InstrumentBench i;
+  for (int slot = 0; slot < 4; ++slot) {
+    EXPECT_EQ(error_of(i, "*RCL " + std::to_string(slot)),
+              "-230,\"Data corrupt or stale;empty or damaged slot: *SAV first\"");
+  }
+  ASSERT_EQ(i.ask("CALC:ENER:TIME 3ms;LIM 2;:SOUR:LEV 0.7;:CALC:MCAR:SEED 9,8,7,6;*SAV 3"), "");
+  ASSERT_EQ(i.ask("*RST;:CALC:FILT:ORD 3;*SAV 0"), "");
+  i.switch_on();
+  EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
+            "0.002;AUTO;1;123456789,345678901,567890123,789012345;10");
+  ASSERT_EQ(i.ask("*RCL 3"), "");
+  EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
+            "0.0030000000000000001;2;0.69999999999999996;9,8,7,6;10");
+  EXPECT_EQ(i.ask("*RCL 0;:CALC:FILT:ORD?"), "3");
+  const double energy = i.numbers(std::string(kPaperModel) + ";:CALC:ENER?")[0];
+  ASSERT_EQ(i.ask("*RCL 3"), "");
+  EXPECT_NE(i.numbers("CALC:ENER?")[0], energy) << "that was with other settings";
+  EXPECT_EQ(error_of(i, "*SAV 4"), "-222,\"Data out of range;4\"");
+  EXPECT_EQ(error_of(i, "*RCL"), "-109,\"Missing parameter;*RCL\"");
+}
+
+TEST(Instrument, KnowsTheLastIdentificationAfterPowerOff) {
+  InstrumentBench i;
+  i.send(table1_commands());
+  ASSERT_TRUE(i.settle());
+  const std::string device = i.ask("CALC:IDEN?");
+  const std::string covariance = i.ask("CALC:IDEN:COV?");
+  const std::string energy = i.ask("CALC:ENER?");
+  i.switch_on();
+  EXPECT_EQ(i.ask("CALC:IDEN?"), device);
+  EXPECT_EQ(i.ask("CALC:IDEN:COV?"), covariance);
+  EXPECT_EQ(i.ask("CALC:ENER?"), energy);
+  EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "0");
+  // Its correlations and its Birge ratio are known to a fit only: no trials as if they were 0
+  // and 1.
+  const char* const needs_fit =
+      "-230,\"Data corrupt or stale;NORM and BIRG need the points of the fit: INIT:SWE\"";
+  EXPECT_EQ(error_of(i, "CALC:MCAR:TRI 1000;DIST NORM;:CALC:MCAR?"), needs_fit);
+  EXPECT_EQ(error_of(i, "CALC:MCAR:DIST BOX;BIRG 1;:INIT:REP"), needs_fit);
+  EXPECT_EQ(i.ask("CALC:MCAR:BIRG 0;:CALC:MCAR?").substr(0, 5), "1000,");
+  ASSERT_EQ(i.ask("*RST"), "");
+  EXPECT_EQ(error_of(i, "CALC:IDEN?"),
+            "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"");
+}
+
+TEST(Instrument, SaysThatTheStoreFails) {
+  InstrumentBench i;
+  i.store.cut_power_after(10);
+  EXPECT_EQ(error_of(i, "*SAV 1"), "-311,\"Memory error;the store refuses: another slot\"");
+  i.store.restore_power();
+  EXPECT_EQ(error_of(i, "*RCL 1"),
+            "-230,\"Data corrupt or stale;empty or damaged slot: *SAV first\"");
+}
+
+TEST(Instrument, CountsErrorsUpToTheQueuesEnd) {
+  InstrumentBench i;
+  for (int n = 0; n < 1000; ++n) {
+    i.send("NOSUCH:THING");
+    ASSERT_TRUE(i.settle());
+  }
+  EXPECT_EQ(i.ask("SYST:ERR:COUN?"), "16");
+  const std::string errors = i.errors();
+  EXPECT_EQ(errors.substr(0, 35), "-113,\"Undefined header;NOSUCH:THING");
+  EXPECT_NE(errors.find("-350,\"Queue overflow\"\n"), std::string::npos);
+  EXPECT_EQ(i.ask("*IDN?"), "emax,test,4711,0.1.0");
+}
+
+TEST(Instrument, TakesCompoundLinesAndStaysAtTheNode) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("CALC:ENER:TIME 3 MS;STEP 5us;TIME?;STEP?;*IDN?;ITER?;:CALC:FILT:ORD?"),
+            "0.0030000000000000001;5.0000000000000004e-06;emax,test,4711,0.1.0;30;10");
+  EXPECT_EQ(i.ask("calculate:filter:order 7;frequency 2khz;:calc:filt:freq?"), "2000");
+  EXPECT_EQ(i.errors(), "");
+}
+
+}  // namespace
+}  // namespace emax

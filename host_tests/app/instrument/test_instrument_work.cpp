@@ -1,0 +1,403 @@
+// What runs in the background: overlapped commands, ABORt, faults of the bench, and peers that
+// misbehave.
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emax/app/instrument/instrument.hpp"
+
+#include "support/instrument_bench.hpp"
+
+namespace emax {
+namespace {
+
+using test::InstrumentBench;
+
+constexpr char kPaperModel[] = "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004";
+
+// Each kind of work: what starts it, and the bits of STATus:OPERation while it runs.
+struct WorkCase {
+  const char* setup;
+  const char* start;
+  const char* condition;
+  const char* stage;
+
+  friend void PrintTo(const WorkCase& work, std::ostream* out) { *out << work.start; }
+};
+
+constexpr WorkCase kWork[] = {
+    {"*CLS", "INIT", "24", "\"sweep\""},
+    {"CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;ENER:TIME 10ms", "INIT:ENER", "256", "\"energy\""},
+    {"CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;ENER?", "INIT:MCAR", "256", "\"Monte Carlo\""},
+    {"CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;ENER?", "INIT:TREN", "256", "\"trend\""},
+};
+
+class InstrumentWork : public testing::TestWithParam<WorkCase> {
+ protected:
+  /// Something runs, and *ESR? has been read.
+  void start(InstrumentBench& i) {
+    (void)i.ask(GetParam().setup);
+    (void)i.ask("*CLS");
+    EXPECT_EQ(i.ask(GetParam().start), "");
+    i.poll(20);
+    ASSERT_TRUE(i.instrument->is_working());
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, InstrumentWork, testing::ValuesIn(kWork),
+                         [](const auto& one) { return std::to_string(one.index); });
+
+TEST_P(InstrumentWork, AnswersStatusAndProgressAtOnce) {
+  InstrumentBench i;
+  start(i);
+  EXPECT_EQ(i.ask("STAT:OPER:COND?"), GetParam().condition);
+  EXPECT_EQ(i.ask("SYST:ERR?;*ESR?;*STB?"), "0,\"No error\";0;0");
+  EXPECT_TRUE(i.instrument->is_working()) << "none of them waits";
+  std::string progress;
+  while (i.instrument->is_working() && progress.find(GetParam().stage) == std::string::npos) {
+    progress = i.ask("SYST:PROG?");
+  }
+  EXPECT_NE(progress.find(GetParam().stage), std::string::npos) << progress;
+  ASSERT_TRUE(i.finish());
+  EXPECT_EQ(i.ask("STAT:OPER:COND?"), "0");
+  EXPECT_EQ(i.ask("STAT:OPER?"), GetParam().condition) << "the event is remembered";
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST_P(InstrumentWork, CompletesOperations) {
+  InstrumentBench i;
+  start(i);
+  EXPECT_EQ(i.ask("*OPC;*ESR?"), "0");
+  ASSERT_TRUE(i.finish());
+  EXPECT_EQ(i.ask("*ESR?"), "1");
+  EXPECT_EQ(i.ask("*OPC;*ESR?"), "1") << "at once if nothing runs";
+}
+
+TEST_P(InstrumentWork, HoldsForOpcQueryAndWai) {
+  for (const auto& [held, answer] :
+       {std::pair{"*OPC?", "1\n"}, {"*WAI;*IDN?", "emax,test,4711,0.1.0\n"}}) {
+    InstrumentBench i;
+    start(i);
+    i.send(held);
+    i.poll(20);
+    EXPECT_TRUE(i.instrument->is_held());
+    EXPECT_EQ(i.console.receive(), "");
+    ASSERT_TRUE(i.finish());
+    EXPECT_EQ(i.console.receive(), answer);
+  }
+}
+
+TEST_P(InstrumentWork, RefusesASecondStart) {
+  InstrumentBench i;
+  start(i);
+  for (const char* second : {"INIT", "INIT:ENER", "INIT:MCAR", "INIT:TREN", "INIT:REP"}) {
+    EXPECT_EQ(i.ask(second), "");
+    EXPECT_EQ(i.ask("SYST:ERR?"), "-213,\"Init ignored;running: ABOR or *WAI first\"");
+  }
+  EXPECT_TRUE(i.instrument->is_working());
+}
+
+TEST_P(InstrumentWork, EndsAtOnceOnAbort) {
+  InstrumentBench i;
+  start(i);
+  (void)i.ask("*OPC");
+  i.send("ABOR");
+  i.poll(2);
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_TRUE(i.drive_is_at_zero());
+  EXPECT_EQ(i.ask("STAT:OPER:COND?;*ESR?"), "0;1");
+  EXPECT_EQ(i.errors(), "") << "it was asked for";
+  // And it can be started again.
+  EXPECT_EQ(i.ask(GetParam().start), "");
+  i.poll(5);
+  EXPECT_TRUE(i.instrument->is_working());
+  EXPECT_TRUE(i.finish());
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST_P(InstrumentWork, EndsAtOnceOnReset) {
+  InstrumentBench i;
+  start(i);
+  EXPECT_EQ(i.ask("*OPC;*RST;*OPC?;*ESR?"), "1;0") << "what *OPC waited for was not completed";
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_TRUE(i.drive_is_at_zero());
+}
+
+// Settings that the work uses are not changed under it; those of the other kind are.
+TEST_P(InstrumentWork, RefusesChangesOfWhatItUses) {
+  InstrumentBench i;
+  start(i);
+  const bool is_sweep = i.instrument->is_sweeping();
+  const std::vector<std::string> of_sweep = {"SOUR:LEV 2", "SWE:FREQ 100,200,300", "SWE:FREQ:DEF",
+                                             "REF:SENS 0.2"};
+  const std::vector<std::string> of_evaluation = {"CALC:FILT:ORD 5", "CALC:ENER:TIME 3ms",
+                                                  "CALC:MCAR:TRI 3000", "CALC:TREN? 1ms,7ms"};
+  const std::vector<std::string> of_both = {"CALC:MOD 1,4000,0.3", "TRAC:FRES:CLE",
+                                            "TRAC:FRES:DATA 1,1,1,1,1", "*RCL 0"};
+  const auto is_refused = [&i](const std::string& command) {
+    (void)i.ask(command);
+    return i.errors().substr(0, 4) == "-221";
+  };
+  for (const std::string& command : of_both) {
+    EXPECT_TRUE(is_refused(command)) << command;
+  }
+  for (const std::string& command : is_sweep ? of_sweep : of_evaluation) {
+    EXPECT_TRUE(is_refused(command)) << command;
+  }
+  EXPECT_TRUE(i.instrument->is_working());
+  if (is_sweep) {
+    EXPECT_EQ(i.ask("CALC:FILT:ORD 5;ORD?"), "5");
+  } else {
+    EXPECT_EQ(i.ask("SOUR:LEV 2;LEV?"), "2");
+  }
+  EXPECT_TRUE(i.finish());
+}
+
+TEST_P(InstrumentWork, GoesOnForAPeerThatNeverReads) {
+  InstrumentBench i({}, 64);  // Room for 64 bytes each way.
+  (void)i.ask(GetParam().setup);
+  i.console.receive();
+  i.poll(100'000);
+  i.console.receive();
+  i.send(GetParam().start);
+  i.poll(10);
+  ASSERT_TRUE(i.instrument->is_working());
+  for (int n = 0; n < 200; ++n) {
+    i.console.send("*IDN?\n");
+    i.poll(1);
+  }
+  ASSERT_TRUE(i.instrument->is_working());
+  EXPECT_FALSE(i.watchdog.bitten());
+  i.console.send("ABOR\n");
+  // The memory for commands is full of queries that cannot be answered: that is given up after a
+  // second, and then the command is reached.
+  for (int n = 0; n < 1000 && i.instrument->is_working(); ++n) {
+    i.poll(100);
+    i.console.send("ABOR\n");
+  }
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_TRUE(i.drive_is_at_zero());
+  EXPECT_FALSE(i.watchdog.bitten());
+}
+
+TEST_P(InstrumentWork, SurvivesAPeerThatGoesAway) {
+  InstrumentBench i;
+  start(i);
+  i.send("*OPC?");
+  i.send("*IDN?");
+  i.poll(20);
+  i.console.connect(false);
+  i.poll(20);
+  EXPECT_TRUE(i.instrument->is_working()) << "what INITiate began goes on";
+  i.console.connect(true);
+  i.poll(20);
+  EXPECT_EQ(i.console.receive(), "") << "answers of the one before";
+  EXPECT_EQ(i.ask("*IDN?"), "emax,test,4711,0.1.0");
+  EXPECT_TRUE(i.finish());
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(InstrumentQueries, WaitForTheSweepAndForWhatTheyBegin) {
+  InstrumentBench i;
+  i.console.send("INIT\nFETC:FRES?\nCALC:ENER?\nSYST:ERR?\n");
+  ASSERT_TRUE(i.settle());
+  const std::string answers = i.console.receive();
+  EXPECT_EQ(answers.substr(0, 6), "5,200,") << "all points";
+  EXPECT_NE(answers.find("\n0.00"), std::string::npos) << answers;
+  EXPECT_EQ(answers.substr(answers.size() - 13), "0,\"No error\"\n");
+}
+
+TEST(InstrumentQueries, AnswerWhatIsThereWhileOtherWorkRuns) {
+  InstrumentBench i;
+  (void)i.ask(kPaperModel);
+  const std::string energy = i.ask("CALC:ENER?");
+  (void)i.ask("INIT:MCAR");
+  i.poll(5);
+  EXPECT_EQ(i.ask("CALC:ENER?"), energy);
+  EXPECT_NE(i.ask("CALC:AERR?"), "");
+  EXPECT_TRUE(i.instrument->is_working());
+}
+
+TEST(InstrumentQueries, EndWithoutAnAnswerOnAbort) {
+  InstrumentBench i;
+  (void)i.ask(kPaperModel);
+  i.console.send("CALC:MCAR?;*IDN?\nSYST:ERR?\n");
+  i.poll(20);
+  EXPECT_TRUE(i.instrument->is_held());
+  i.send("SYST:PROG?");
+  i.poll(5);
+  EXPECT_NE(i.console.receive().find(",\""), std::string::npos) << "that one overtakes";
+  EXPECT_TRUE(i.instrument->is_held());
+  i.send("ABOR");
+  i.poll(10);
+  EXPECT_FALSE(i.instrument->is_working());
+  ASSERT_TRUE(i.settle());
+  EXPECT_EQ(i.console.receive(), "emax,test,4711,0.1.0\n-200,\"Execution error;aborted\"\n");
+  // What was complete by then is still there, and the rest is computed anew.
+  EXPECT_EQ(i.ask("CALC:MCAR:TRI 1000;:CALC:MCAR?").substr(0, 5), "1000,");
+}
+
+TEST(InstrumentQueries, EndOnAMessageThatOnlyBeginsWithAbort) {
+  InstrumentBench i;
+  (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000000");
+  i.send("CALC:MCAR?");
+  i.poll(20);
+  ASSERT_TRUE(i.instrument->is_held());
+  i.send("ABOR;*CLS;*RST;:CALC:MCAR:TRI?");
+  i.poll(20);
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_EQ(i.console.receive(), "200000\n");
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(InstrumentQueries, StopForAPeerThatGoesAway) {
+  InstrumentBench i;
+  (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000000");
+  i.send("CALC:MCAR?");
+  i.poll(20);
+  ASSERT_TRUE(i.instrument->is_working());
+  i.console.connect(false);
+  i.poll();
+  EXPECT_FALSE(i.instrument->is_working()) << "nobody waits for it";
+  i.console.connect(true);
+  EXPECT_EQ(i.ask("*IDN?"), "emax,test,4711,0.1.0");
+}
+
+TEST(InstrumentQueries, AreAnsweredInPiecesOfAnySize) {
+  InstrumentBench i({}, 64);
+  std::string answer;
+  i.send("DIAG:RAND? 2000");
+  for (int n = 0; n < 100'000 && (answer.empty() || answer.back() != '\n'); ++n) {
+    i.poll();
+    answer += i.console.receive();
+  }
+  EXPECT_EQ(std::count(answer.begin(), answer.end(), ','), 1999);
+  EXPECT_EQ(answer.substr(0, 19), "0.75099757068263173");
+}
+
+TEST(InstrumentQueries, CanBeDroppedWhenNobodyReads) {
+  InstrumentBench i({}, 64);
+  i.send("DIAG:RAND? 1000000");
+  for (int n = 0; n < 1000; ++n) {
+    i.console.send("*ESR?\n*CLS\n");  // 8 KiB that nobody takes.
+    i.poll(100);
+  }
+  i.console.receive();
+  for (int n = 0; n < 1000; ++n) {
+    i.poll(20);
+    i.console.receive();
+  }
+  i.send("*CLS");
+  EXPECT_EQ(i.ask("*IDN?"), "emax,test,4711,0.1.0");
+}
+
+TEST(InstrumentSweep, KeepsPointsOnAbort) {
+  InstrumentBench i;
+  (void)i.ask("INIT");
+  for (int n = 0; n < 1'000'000 && i.ask("SYST:PROG?").substr(0, 2) < "50"; ++n) {
+  }
+  (void)i.ask("ABOR");
+  EXPECT_TRUE(i.drive_is_at_zero());
+  const std::vector<double> points = i.numbers("FETC:FRES?");
+  ASSERT_GE(points.size(), 6U);
+  EXPECT_LT(points[0], 5.0);
+  EXPECT_EQ(points.size(), 1U + 5 * static_cast<std::size_t>(points[0]));
+  EXPECT_EQ(points[1], 200.0);
+  EXPECT_EQ(i.ask("CALC:ENER?"), "");
+  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+  (void)i.ask(kPaperModel);
+  EXPECT_EQ(i.numbers("FETC:FRES?"), points) << "they stay beside a device from elsewhere";
+  EXPECT_EQ(i.ask("TRAC:FRES:CLE;POIN?"), "0");
+  EXPECT_EQ(i.ask("FETC:FRES?"), "");
+  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+}
+
+TEST(InstrumentSweep, FindsTheDeviceOfTheBench) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  const std::vector<double> device = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(device.size(), 8U);
+  // Within four of its own standard uncertainties.
+  EXPECT_NEAR(device[0], 1.037, 4.0 * device[3]);
+  EXPECT_NEAR(device[1], 4073.0, 4.0 * device[4]);
+  EXPECT_NEAR(device[2], 0.3182, 4.0 * device[5]);
+  // Points of a sweep and others do not mix.
+  (void)i.ask("TRAC:FRES:DATA 6000,1,-90,0.1,1");
+  EXPECT_EQ(i.errors(), "-221,\"Settings conflict;points of a sweep: TRAC:FRES:CLE first\"\n");
+  // A device given by its parameters takes over, and the points stay.
+  const std::string points = i.ask("FETC:FRES?");
+  EXPECT_EQ(i.ask("CALC:MOD 2,4000,0.3;MOD?").substr(0, 7), "2,4000,");
+  EXPECT_EQ(i.ask("TRAC:FRES:POIN?"), "5");
+  EXPECT_EQ(i.ask("FETC:FRES?"), points) << "with the part of u that is common to all of them";
+  EXPECT_EQ(i.numbers("CALC:IDEN?"), device);
+  EXPECT_EQ(i.numbers("CALC:MOD?")[0], device[0]);
+}
+
+struct FaultCase {
+  sim::FaultKind kind;
+  const char* error;
+  const char* questionable;
+  std::uint64_t at_frame = 40'000;  ///< One point has been measured by then, at 200 Hz.
+
+  friend void PrintTo(const FaultCase& fault, std::ostream* out) {
+    *out << sim::name_of(fault.kind);
+  }
+};
+
+constexpr FaultCase kFaults[] = {
+    {sim::FaultKind::kLostBlock, "-240,\"Hardware error;lost block: ", "4"},
+    {sim::FaultKind::kLateBlock, "-240,\"Hardware error;late block: ", "4"},
+    {sim::FaultKind::kStuckChannel, "-240,\"Hardware error;stuck channel: ", "1"},
+    {sim::FaultKind::kSaturation, "-240,\"Hardware error;saturated channel: ", "1"},
+    {sim::FaultKind::kUnpluggedReference, "-240,\"Hardware error;no reference: ", "1"},
+    {sim::FaultKind::kUnpluggedDevice, "-240,\"Hardware error;no device: ", "1"},
+    {sim::FaultKind::kSwappedChannels, "-240,\"Hardware error;swapped channels: ", "256"},
+    {sim::FaultKind::kInvertedPolarity, "-240,\"Hardware error;inverted polarity: ", "64", 60'000},
+    {sim::FaultKind::kDcDrift, "-240,\"Hardware error;DC drift: ", "1"},
+};
+
+class InstrumentFaults : public testing::TestWithParam<FaultCase> {};
+
+INSTANTIATE_TEST_SUITE_P(All, InstrumentFaults, testing::ValuesIn(kFaults),
+                         [](const auto& one) { return std::to_string(one.index); });
+
+TEST_P(InstrumentFaults, AreErrorsWithTheDriveAtZero) {
+  sim::BenchSettings settings;
+  settings.fault = {GetParam().kind, GetParam().at_frame};
+  InstrumentBench i(settings);
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  EXPECT_TRUE(i.drive_is_at_zero());
+  const std::string error = i.ask("SYST:ERR?");
+  EXPECT_EQ(error.substr(0, std::string(GetParam().error).size()), GetParam().error);
+  EXPECT_EQ(i.errors(), "") << "one fault, one error";
+  EXPECT_EQ(i.ask("STAT:QUES:COND?"), GetParam().questionable);
+  const std::vector<double> points = i.numbers("FETC:FRES?");
+  ASSERT_GE(points.size(), 6U) << "what was measured before stays";
+  EXPECT_EQ(points[1], 200.0);
+  EXPECT_EQ(i.ask("CALC:IDEN?"), "");
+  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+}
+
+TEST(InstrumentSweep, RefusesWhatTheBenchCannotDo) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("SWE:FREQ 100,200,39999"), "");
+  EXPECT_EQ(i.ask("SWE:FREQ 100,200,40000"), "");
+  EXPECT_EQ(i.errors(),
+            "-221,\"Settings conflict;sweep frequencies: above 0 and below the sample rate over "
+            "2.5\"\n");
+  EXPECT_EQ(i.ask("SOUR:LEV 21"), "");
+  EXPECT_EQ(i.errors().substr(0, 4), "-221");
+}
+
+TEST(InstrumentWatchdog, IsKickedByEveryPoll) {
+  InstrumentBench i;
+  i.poll(5000);
+  EXPECT_TRUE(i.watchdog.running());
+  EXPECT_FALSE(i.watchdog.bitten());
+}
+
+}  // namespace
+}  // namespace emax

@@ -1,0 +1,544 @@
+// The calibration on the simulated bench: does it find the truth, and does it keep its limits?
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "emax/app/measure/sweep.hpp"
+#include "emax/sim/sim_bench.hpp"
+
+#include "app/sweep_run.hpp"
+
+namespace {
+
+using emax::Status;
+using emax::app::Sweep;
+using emax::app::SweepPoint;
+using emax::app::SweepSettings;
+using emax::app::SweepStage;
+using emax::app::SweepWorkspace;
+using emax::sim::BenchSettings;
+using emax::sim::SimBench;
+using emax_test::ideal_bench;
+using emax_test::response_of;
+using emax_test::SweepRun;
+
+TEST(SweepSettings, DefaultsAreTheFrequenciesOfTable1) {
+  const std::vector<double> table = emax_test::table1_frequencies();
+  const SweepSettings settings;
+  ASSERT_EQ(settings.frequency_count, table.size());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    EXPECT_EQ(settings.frequency_hz[i], table[i]);
+  }
+}
+
+TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
+  double squares = 0.0;
+  std::size_t components = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    BenchSettings bench;
+    bench.seed = seed;
+    SweepRun run(bench);
+    run.to_end(SweepSettings());
+    ASSERT_EQ(run.sweep.status(), Status::kOk);
+    ASSERT_EQ(run.sweep.points().size(), 42U);
+    for (const SweepPoint& point : run.sweep.points()) {
+      // What is common to all points is taken out: they are to scatter about the apparent response.
+      const std::complex<double> k =
+          response_of(run.bench.truth().device, run.bench.truth().apparent_sensitivity,
+                      point.point.frequency_hz);
+      const double z_amplitude = (point.point.amplitude - std::abs(k)) / point.point.u_amplitude;
+      const double z_phase = (point.point.phase_rad - std::arg(k)) / point.point.u_phase_rad;
+      EXPECT_LT(std::fabs(z_amplitude), 4.5) << point.point.frequency_hz;
+      EXPECT_LT(std::fabs(z_phase), 4.5) << point.point.frequency_hz;
+      squares += z_amplitude * z_amplitude + z_phase * z_phase;
+      components += 2;
+      EXPECT_NEAR(point.acceleration_mps2, 1.0, 0.06);
+      // 5 mV of noise on 1 V and more, and 1.4 mV of the drive's 12 bits.
+      EXPECT_LT(point.residual_percent, 1.5);
+    }
+    // The certificate, the gains and the mounting; the check adds what it saw.
+    EXPECT_NEAR(run.sweep.common().total, std::sqrt(0.25 * 0.25 + 0.05 * 0.05 + 0.1 * 0.1) / 100.0,
+                5e-5);
+    EXPECT_LT(run.sweep.common().drift, 3e-4);
+    // 5 mV, from 288 degrees of freedom.
+    EXPECT_NEAR(run.sweep.noise().reference_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
+    EXPECT_NEAR(run.sweep.noise().device_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
+    EXPECT_GE(run.sweep.noise().dof, 250U);
+  }
+  const auto n = static_cast<double>(components);
+  EXPECT_NEAR(squares / n, 1.0, 4.0 * std::sqrt(2.0 / n));
+}
+
+TEST(Sweep, IdealBenchComesBackExactly) {
+  SweepRun run(ideal_bench());
+  run.to_end(SweepSettings());
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  for (const SweepPoint& point : run.sweep.points()) {
+    const std::complex<double> k =
+        response_of(run.bench.truth().device, 1.037, point.point.frequency_hz);
+    const std::complex<double> found = std::polar(point.point.amplitude, point.point.phase_rad);
+    // What is left of the suspension's swing after three periods: a shift of 0.02 rad at most
+    // between its frequency and this one, of less than 1e-3 of the signal.
+    EXPECT_LT(std::abs(found / k - 1.0), 2e-5) << point.point.frequency_hz;
+    EXPECT_FALSE(point.flagged && point.point.frequency_hz > 1000.0);
+  }
+}
+
+TEST(Sweep, LatencyAndBlocksDoNotMatter) {
+  for (const std::uint32_t block : {1U, 17U, 64U}) {
+    for (const std::uint32_t latency : {0U, 127U}) {
+      emax::hal::StreamFormat format = emax::sim::kBenchFormat;
+      format.block_frames = block;
+      format.latency_frames = latency;
+      SweepRun run(BenchSettings(), format);
+      SweepSettings settings;
+      settings.frequency_hz = {200.0, 1000.0, 4000.0};
+      settings.frequency_count = 3;
+      run.to_end(settings);
+      ASSERT_EQ(run.sweep.status(), Status::kOk) << block << " " << latency;
+      for (const SweepPoint& point : run.sweep.points()) {
+        const std::complex<double> k =
+            response_of(run.bench.truth().device, run.bench.truth().apparent_sensitivity,
+                        point.point.frequency_hz);
+        EXPECT_NEAR(point.point.amplitude, std::abs(k), 4.5 * point.point.u_amplitude);
+        EXPECT_NEAR(point.point.phase_rad, std::arg(k), 4.5 * point.point.u_phase_rad);
+      }
+    }
+  }
+}
+
+void expect_same_points(const Sweep& sweep, const std::vector<SweepPoint>& expected) {
+  ASSERT_EQ(sweep.points().size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(sweep.points()[i].point.amplitude, expected[i].point.amplitude);
+    EXPECT_EQ(sweep.points()[i].point.u_amplitude, expected[i].point.u_amplitude);
+    EXPECT_EQ(sweep.points()[i].point.u_phase_rad, expected[i].point.u_phase_rad);
+    EXPECT_EQ(sweep.points()[i].drive_v, expected[i].drive_v);
+  }
+}
+
+TEST(Sweep, RunsAgainWithTheSameBits) {
+  SweepSettings settings;
+  settings.frequency_hz = {300.0, 700.0, 5000.0};
+  settings.frequency_count = 3;
+  SweepRun run((BenchSettings()));
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  const std::vector<SweepPoint> before(run.sweep.points().begin(), run.sweep.points().end());
+  BenchSettings other;
+  other.seed = 99;
+  ASSERT_EQ(run.bench.configure(other), Status::kOk);
+  run.to_end(SweepSettings());
+  ASSERT_EQ(run.bench.configure(BenchSettings()), Status::kOk);
+  run.to_end(settings);
+  expect_same_points(run.sweep, before);
+}
+
+TEST(Sweep, WhatTheWorkspaceHoldsBeforeAndAfterDoesNotMatter) {
+  SweepSettings settings;
+  settings.frequency_hz = {300.0, 700.0, 5000.0};
+  settings.frequency_count = 3;
+  SweepRun clean((BenchSettings()));
+  clean.to_end(settings);
+  ASSERT_EQ(clean.sweep.status(), Status::kOk);
+  const std::vector<SweepPoint> expected(clean.sweep.points().begin(), clean.sweep.points().end());
+  // The bytes of other work, as numbers small, large, negative and none at all.
+  for (const int byte : {0x00, 0x3F, 0x7F, 0xC0, 0xFF}) {
+    SweepRun run((BenchSettings()));
+    std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
+    run.to_end(settings);
+    ASSERT_EQ(run.sweep.status(), Status::kOk) << byte;
+    std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
+    EXPECT_EQ(run.sweep.noise().device_v, clean.sweep.noise().device_v);
+    EXPECT_EQ(run.sweep.common().total, clean.sweep.common().total);
+    expect_same_points(run.sweep, expected);
+  }
+}
+
+TEST(Sweep, HasNoSettingsBeforeItsFirstStart) {
+  static Sweep sweep;
+  EXPECT_EQ(sweep.settings().frequency_count, 0U);
+  EXPECT_EQ(sweep.settings().repeats, 0U);
+  EXPECT_EQ(sweep.settings().reference.count, 0U);
+  EXPECT_EQ(sweep.settings().expected_sensitivity, 0.0);
+}
+
+TEST(Sweep, StagesFollowEachOther) {
+  SweepRun run((BenchSettings()));
+  EXPECT_TRUE(run.sweep.done());
+  EXPECT_EQ(run.sweep.stage(), SweepStage::kIdle);
+  run.sweep.step(run.bench, run.work);  // Nothing.
+  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
+  EXPECT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kAlreadyRunning);
+  emax::FrequencyResponse response;
+  EXPECT_EQ(run.sweep.copy_to(response), Status::kNotRunning);
+  std::vector<SweepStage> stages = {run.sweep.stage()};
+  double progress = 0.0;
+  while (!run.sweep.done()) {
+    run.sweep.step(run.bench, run.work);
+    EXPECT_GE(run.sweep.progress(), progress);
+    progress = run.sweep.progress();
+    if (run.sweep.stage() != stages.back()) {
+      stages.push_back(run.sweep.stage());
+    }
+  }
+  const std::vector<SweepStage> expected = {SweepStage::kSilence, SweepStage::kCheckBefore,
+                                            SweepStage::kPoints, SweepStage::kCheckAfter,
+                                            SweepStage::kDone};
+  EXPECT_EQ(stages, expected);
+  EXPECT_EQ(progress, 1.0);
+  EXPECT_FALSE(run.bench.running());
+  EXPECT_EQ(run.bench.dac().last, 0);
+  ASSERT_EQ(run.sweep.copy_to(response), Status::kOk);
+  EXPECT_EQ(response.size(), 42U);
+  EXPECT_EQ(response.common()[41], run.sweep.common().total);
+  EXPECT_EQ(response.points()[7].u_amplitude, run.sweep.points()[7].point.u_amplitude);
+}
+
+TEST(Sweep, DriveKeepsItsLimits) {
+  struct Case {
+    double level_mps2;
+    double drive_limit_v;
+    double slew_v_per_s;
+    double highest_hz;
+  };
+  // The last ones are near what amplitude or slope permit.
+  const Case cases[] = {{1.0, 5.0, 1e5, 6000.0},
+                        {0.9, 0.55, 3e4, 6000.0},
+                        {8.0, 5.0, 4e5, 6000.0},
+                        {0.1, 5.0, 2e3, 6000.0},
+                        {0.3, 5.0, 1e5, 20000.0}};
+  for (const Case& c : cases) {
+    SweepRun run((BenchSettings()));
+    SweepSettings settings;
+    settings.frequency_hz = {30.0, 100.0, 1000.0, 1001.0, c.highest_hz};
+    settings.frequency_count = 5;
+    settings.level_mps2 = c.level_mps2;
+    settings.drive_limit_v = c.drive_limit_v;
+    settings.slew_v_per_s = c.slew_v_per_s;
+    run.to_end(settings);
+    EXPECT_EQ(run.sweep.status(), Status::kOk) << c.level_mps2;
+    run.expect_limits_kept(settings);
+  }
+}
+
+TEST(Sweep, StopsBetweenAnyTwoBlocks) {
+  for (const std::uint64_t blocks : {0U, 1U, 200U, 400U, 900U, 3000U, 6000U, 8950U}) {
+    SweepRun run((BenchSettings()));
+    SweepSettings settings;
+    ASSERT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
+    while (run.sweep.blocks() < blocks) {
+      run.sweep.step(run.bench, run.work);
+    }
+    const std::uint64_t before = run.bench.clock_frames();
+    const std::size_t points = run.sweep.points().size();
+    run.sweep.stop(run.bench, run.work);
+    EXPECT_TRUE(run.sweep.done());
+    EXPECT_EQ(run.sweep.status(), Status::kStopped);
+    EXPECT_EQ(run.sweep.points().size(), points);
+    EXPECT_LE(run.bench.clock_frames() - before, emax::hal::kMaxRampFrames);
+    EXPECT_EQ(run.bench.dac().last, 0);
+    EXPECT_FALSE(run.bench.running());
+    for (const SweepPoint& point : run.sweep.points()) {
+      EXPECT_GT(point.point.u_amplitude, 0.0);
+    }
+    run.expect_limits_kept(settings);
+    run.sweep.stop(run.bench, run.work);
+    run.sweep.step(run.bench, run.work);
+    EXPECT_EQ(run.sweep.status(), Status::kStopped);
+    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
+  }
+}
+
+TEST(Sweep, OverrangeLowersTheDrive) {
+  // A gain of 20 that the settings know of: 1 m/s^2 would need 20 V at the converter.
+  BenchSettings bench;
+  bench.device_gain = 20.0;
+  SweepSettings settings;
+  settings.device_gain = 20.0;
+  SweepRun run(bench);
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  for (const SweepPoint& point : run.sweep.points()) {
+    const std::complex<double> k = response_of(
+        run.bench.truth().device, run.bench.truth().apparent_sensitivity, point.point.frequency_hz);
+    EXPECT_NEAR(point.point.amplitude, std::abs(k), 5.0 * point.point.u_amplitude);
+    EXPECT_LT(point.acceleration_mps2 * 20.0 * std::abs(k), 10.0);
+    EXPECT_GT(point.acceleration_mps2, 0.1);
+  }
+  run.expect_limits_kept(settings);
+}
+
+/// Both channels hear a quarter of the drive, and once, on demand, something else.
+class EchoStream final : public emax::hal::AnalogStream {
+ public:
+  EchoStream() noexcept : AnalogStream({1e5, 10.0, 10.0, 64, 0}) {}
+  void spike(double volts) { spike_v_ = volts; }
+
+ private:
+  Status do_start() noexcept override { return Status::kOk; }
+  emax::hal::Exchange do_exchange(emax::Span<const emax::hal::Word> drive,
+                                  emax::Span<emax::hal::Frame> response) noexcept override {
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      response[i] = {drive[i] / 4, drive[i] / 4};
+    }
+    if (spike_v_ != 0.0) {
+      response[10].reference = static_cast<emax::hal::Word>(spike_v_ / 10.0 * 2147483648.0);
+      spike_v_ = 0.0;
+    }
+    frames_ += drive.size();
+    return {Status::kOk, frames_ - drive.size()};
+  }
+  std::uint32_t do_ramp_to_zero(emax::hal::Word) noexcept override { return 256; }
+  void do_stop() noexcept override {}
+
+  std::uint64_t frames_ = 0;
+  double spike_v_ = 0.0;
+};
+
+/// The drive of the first point, in the midst of which the reference sees so much.
+double drive_with_spike(double volts) {
+  SweepSettings settings;
+  settings.frequency_count = 3;
+  settings.limit_mps2 = 5.0;  // 1 V per m/s^2.
+  EchoStream stream;
+  static Sweep sweep;
+  static SweepWorkspace work;
+  EXPECT_EQ(sweep.start(settings, stream, work), Status::kOk);
+  while (!sweep.done() && sweep.stage() != SweepStage::kPoints) {
+    sweep.step(stream, work);
+  }
+  stream.spike(volts);
+  while (!sweep.done()) {
+    sweep.step(stream, work);
+  }
+  EXPECT_EQ(sweep.status(), Status::kOk);
+  return sweep.points()[0].drive_v;
+}
+
+TEST(Sweep, APeakOfEitherSignBeyondTheLimitLowersTheDrive) {
+  const double undisturbed_v = drive_with_spike(4.5);
+  EXPECT_EQ(drive_with_spike(-4.5), undisturbed_v);
+  EXPECT_LT(drive_with_spike(5.5), 0.6 * undisturbed_v);
+  EXPECT_LT(drive_with_spike(-5.5), 0.6 * undisturbed_v);
+}
+
+TEST(Sweep, WeakSignalRaisesTheDrive) {
+  BenchSettings bench;
+  bench.shaker.gain = 0.01;
+  SweepSettings settings;
+  settings.level_mps2 = 0.02;
+  SweepRun run(bench);
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  EXPECT_NEAR(run.sweep.points()[20].acceleration_mps2, 0.02, 0.0015);
+}
+
+TEST(Sweep, LevelAtTheAccelerationLimit) {
+  SweepSettings settings;
+  settings.level_mps2 = 2.0;
+  settings.limit_mps2 = 2.0;
+  SweepRun run((BenchSettings()));
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  for (const SweepPoint& point : run.sweep.points()) {
+    EXPECT_LT(point.acceleration_mps2, 2.0);
+    // Half where the shaker's swing has gone beyond the limit on the way.
+    EXPECT_GT(point.acceleration_mps2, 0.85);
+  }
+}
+
+TEST(Sweep, UnreachableLevel) {
+  SweepSettings settings;
+  settings.level_mps2 = 19.0;  // 5 V reach 10 m/s^2.
+  SweepRun run((BenchSettings()));
+  run.to_end(settings);
+  EXPECT_EQ(run.sweep.status(), Status::kLevelNotReached);
+  EXPECT_EQ(run.sweep.failed_frequency_hz(), 160.0);
+  run.expect_limits_kept(settings);
+
+  // At 6 kHz the slope permits 0.9 (20 kV/s)/(2 pi 6 kHz) = 0.48 V; at 3 kHz it is enough.
+  settings = SweepSettings();
+  settings.slew_v_per_s = 2e4;
+  settings.level_mps2 = 1.5;
+  SweepRun slow((BenchSettings()));
+  slow.to_end(settings);
+  EXPECT_EQ(slow.sweep.status(), Status::kLevelNotReached);
+  EXPECT_GT(slow.sweep.failed_frequency_hz(), 3000.0);
+  EXPECT_GT(slow.sweep.points().size(), 26U);
+  slow.expect_limits_kept(settings);
+}
+
+TEST(Sweep, DeadShaker) {
+  BenchSettings bench;
+  bench.shaker.gain = 1e-7;
+  SweepRun run(bench);
+  run.to_end(SweepSettings());
+  EXPECT_EQ(run.sweep.status(), Status::kWeakSignal);
+  run.expect_limits_kept(SweepSettings());
+}
+
+TEST(Sweep, DistortionIsFlaggedThenRefused) {
+  BenchSettings bench;
+  bench.second_harmonic = 0.1;  // 5 % at 0.5 V.
+  SweepRun flagged(bench);
+  flagged.to_end(SweepSettings());
+  ASSERT_EQ(flagged.sweep.status(), Status::kOk);
+  EXPECT_TRUE(flagged.sweep.points()[10].flagged);
+  EXPECT_NEAR(flagged.sweep.points()[10].residual_percent, 3.6, 0.8);
+  SweepRun clean((BenchSettings()));
+  clean.to_end(SweepSettings());
+  EXPECT_FALSE(clean.sweep.points()[10].flagged);
+
+  SweepSettings settings;
+  settings.level_mps2 = 5.0;  // 2.5 V: 25 %.
+  SweepRun refused(bench);
+  refused.to_end(settings);
+  EXPECT_EQ(refused.sweep.status(), Status::kDistorted);
+}
+
+TEST(Sweep, ReferenceTableIsInterpolated) {
+  SweepSettings settings;
+  settings.frequency_hz = {500.0, 2000.0, 5000.0};
+  settings.frequency_count = 3;
+  // Twice the true 0.1 in the middle: the accelerations read half, the ratio doubles.
+  settings.reference.count = 3;
+  settings.reference.frequency_hz = {1000.0, 3000.0, 4000.0};
+  settings.reference.sensitivity = {0.1, 0.2, 0.1};
+  SweepRun run(ideal_bench());
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  const double factors[] = {1.0, 1.5, 1.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SweepPoint& point = run.sweep.points()[i];
+    const double k =
+        std::abs(response_of(run.bench.truth().device, 1.037, point.point.frequency_hz));
+    EXPECT_NEAR(point.point.amplitude / k, factors[i], 1e-4);
+  }
+}
+
+TEST(Sweep, DriftOfTheCheckEntersTheCommonPart) {
+  BenchSettings bench;
+  bench.drift_expanded_percent = 2.0;
+  bench.seed = 4;
+  SweepRun run(bench);
+  run.to_end(SweepSettings());
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  // Both checks are near the ends of the sweep: 0.36 s and 5.86 s of the 10 s of the drift.
+  const double change = run.bench.truth().reference_drift * 0.55;
+  ASSERT_GT(std::fabs(change), 1e-3);
+  EXPECT_NEAR(run.sweep.common().drift, std::fabs(change) / std::sqrt(3.0), 3e-4);
+  EXPECT_GT(run.sweep.common().total, run.sweep.common().drift);
+}
+
+TEST(Sweep, HumRaisesTheUncertaintyWhereItIs) {
+  BenchSettings bench;
+  bench.hum_v = 5e-3;
+  SweepRun run(bench);
+  run.to_end(SweepSettings());
+  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  const SweepPoint& at50 = run.sweep.points()[2];
+  ASSERT_EQ(at50.point.frequency_hz, 50.0);
+  // 5 mV on 1 V in each channel, half of its square on each component.
+  EXPECT_NEAR(at50.budget.hum, 5e-3, 5e-4);
+  EXPECT_GT(at50.point.u_amplitude, 10.0 * run.sweep.points()[9].point.u_amplitude);
+  EXPECT_LT(run.sweep.points()[30].budget.hum, 1e-5);
+}
+
+struct BadSetting {
+  const char* name;
+  void (*spoil)(SweepSettings&);
+};
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const BadSetting kBad[] = {
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_count = 2; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_count = 65; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[0] = 0.0; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[0] = -30.0; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[0] = 0.05; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[41] = 40000.0; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[5] = s.frequency_hz[4]; }},
+    {"sweep frequencies", [](SweepSettings& s) { s.frequency_hz[5] = kNan; }},
+    {"check frequency", [](SweepSettings& s) { s.check_hz = 0.0; }},
+    {"check frequency", [](SweepSettings& s) { s.check_hz = 40000.0; }},
+    {"check frequency", [](SweepSettings& s) { s.check_hz = kNan; }},
+    {"level", [](SweepSettings& s) { s.level_mps2 = 0.0; }},
+    {"level", [](SweepSettings& s) { s.level_mps2 = kNan; }},
+    {"acceleration limit", [](SweepSettings& s) { s.limit_mps2 = 0.5; }},
+    {"acceleration limit", [](SweepSettings& s) { s.limit_mps2 = kInfinity; }},
+    {"drive limit", [](SweepSettings& s) { s.drive_limit_v = 10.1; }},
+    {"drive limit", [](SweepSettings& s) { s.drive_limit_v = 0.0; }},
+    {"drive limit", [](SweepSettings& s) { s.drive_limit_v = kNan; }},
+    {"slew", [](SweepSettings& s) { s.slew_v_per_s = 1953.0; }},  // 5 V/256 per frame: 1953.125.
+    {"slew", [](SweepSettings& s) { s.slew_v_per_s = kInfinity; }},
+    {"slew", [](SweepSettings& s) { s.slew_v_per_s = kNan; }},
+    {"settling time", [](SweepSettings& s) { s.settle_s = -1.0; }},
+    {"settling time", [](SweepSettings& s) { s.settle_s = kNan; }},
+    {"cycles", [](SweepSettings& s) { s.cycles = 0; }},
+    {"cycles", [](SweepSettings& s) { s.cycles = 1001; }},
+    {"repeat duration", [](SweepSettings& s) { s.repeat_s = 11.0; }},
+    {"repeat duration", [](SweepSettings& s) { s.repeat_s = kNan; }},
+    {"repeats", [](SweepSettings& s) { s.repeats = 1; }},
+    {"repeats", [](SweepSettings& s) { s.repeats = 17; }},
+    {"reference table", [](SweepSettings& s) { s.reference.count = 0; }},
+    {"reference table", [](SweepSettings& s) { s.reference.count = 33; }},
+    {"reference sensitivity", [](SweepSettings& s) { s.reference.sensitivity[0] = 0.0; }},
+    {"reference sensitivity", [](SweepSettings& s) { s.reference.sensitivity[0] = kNan; }},
+    {"reference table",
+     [](SweepSettings& s) {
+       s.reference.count = 2;
+       s.reference.frequency_hz = {200.0, 100.0};
+       s.reference.sensitivity = {0.1, 0.1};
+     }},
+    {"reference uncertainty", [](SweepSettings& s) { s.reference.expanded_percent = -0.1; }},
+    {"reference uncertainty", [](SweepSettings& s) { s.reference.expanded_percent = kNan; }},
+    {"reference gain", [](SweepSettings& s) { s.reference_gain = 0.0; }},
+    {"device gain", [](SweepSettings& s) { s.device_gain = -1.0; }},
+    {"gain uncertainty", [](SweepSettings& s) { s.gain_expanded_percent = 51.0; }},
+    {"mounting uncertainty", [](SweepSettings& s) { s.mounting_expanded_percent = kNan; }},
+    {"skew", [](SweepSettings& s) { s.skew_s = 0.1; }},
+    {"skew", [](SweepSettings& s) { s.skew_s = kNan; }},
+    {"expected sensitivity", [](SweepSettings& s) { s.expected_sensitivity = -1.0; }},
+    {"expected sensitivity", [](SweepSettings& s) { s.expected_sensitivity = kNan; }},
+};
+
+TEST(Sweep, BadSettingsAreRefusedByName) {
+  SweepRun run((BenchSettings()));
+  SweepSettings few;
+  few.frequency_hz = {300.0, 700.0, 5000.0};
+  few.frequency_count = 3;
+  run.to_end(few);
+  for (const BadSetting& bad : kBad) {
+    SweepSettings settings;
+    bad.spoil(settings);
+    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kInvalidArgument) << bad.name;
+    ASSERT_NE(run.sweep.refused_setting(), nullptr);
+    EXPECT_EQ(std::string(run.sweep.refused_setting()), bad.name);
+    EXPECT_GT(std::strlen(run.sweep.refused_expectation()), 5U);
+    EXPECT_FALSE(run.bench.running());
+    EXPECT_EQ(run.sweep.points().size(), 3U);  // What was measured before is still there.
+  }
+  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
+  EXPECT_EQ(run.sweep.refused_setting(), nullptr);
+}
+
+TEST(Sweep, BenchThatDoesNotStart) {
+  SimBench bench;  // Not configured.
+  static Sweep sweep;
+  static SweepWorkspace work;
+  EXPECT_EQ(sweep.start(SweepSettings(), bench, work), Status::kHardwareFault);
+  EXPECT_TRUE(sweep.done());
+  EXPECT_EQ(sweep.refused_setting(), nullptr);
+}
+
+}  // namespace
