@@ -58,6 +58,8 @@ class EchoStream final : public hal::AnalogStream {
 
   void do_stop() noexcept override {}
 
+  bool do_drive_is_at_zero() const noexcept override { return last_ == 0; }
+
   hal::Word noise() noexcept {
     state_ = kFactor * state_ + kIncrement;
     return static_cast<hal::Word>(state_ >> kNoiseShift);

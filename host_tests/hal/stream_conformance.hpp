@@ -52,8 +52,9 @@ enum class StreamClause : std::uint8_t {
   kConstantLatency,    ///< And always at the same place.
   kZeroIsZero,         ///< Words are signed: zero volts are 0.
   kLeftJustified,      ///< Words are left-justified.
+  kTellsZero,          ///< drive_is_at_zero() where nothing runs and the DAC is at 0; only there.
 };
-inline constexpr std::size_t kStreamClauses = 33;
+inline constexpr std::size_t kStreamClauses = 34;
 
 using StreamViolations = std::bitset<kStreamClauses>;
 
@@ -122,7 +123,8 @@ inline const char* name_of(StreamClause clause) {
                                                                      "stated_latency",
                                                                      "constant_latency",
                                                                      "zero_is_zero",
-                                                                     "left_justified"};
+                                                                     "left_justified",
+                                                                     "tells_zero"};
   return kNames[static_cast<std::size_t>(clause)];
 }
 
@@ -215,6 +217,7 @@ class StreamRun {
     const DriveProbe after = probe();
     require(after.last == 0 && after.frames - before.frames <= after.frames_since_nonzero,
             StreamClause::kZeroAtStart);
+    look_at_zero(after);
     limits_ = limits;
     rounding_ = rounding;
     ++runs_;
@@ -342,6 +345,12 @@ class StreamRun {
             StreamClause::kAmplitudeKept);
     require(now.max_step <= static_cast<std::uint32_t>(limits_.step_per_frame) + rounding_,
             StreamClause::kSlopeKept);
+    look_at_zero(now);
+  }
+
+  void look_at_zero(const DriveProbe& now) {
+    const bool is_at_zero = now.last == 0 && !stream_.running();
+    require(stream_.drive_is_at_zero() == is_at_zero, StreamClause::kTellsZero);
   }
 
   void look_at_word(Word word) {

@@ -78,6 +78,8 @@ enum class BoardDefect : std::uint8_t {
   kOffsetBinary,
   kRightJustified,
   kDirtyLowBits,
+  kNeverAtZero,
+  kRampMissingUnnoticed,
 };
 
 StreamFormat format_of(BoardDefect defect) {
@@ -211,7 +213,7 @@ class BrokenBoard final : public AnalogStream {
     if (has(BoardDefect::kRampWaitsForInputs) && dead_) {
       loopback_.wait(1000000);
     }
-    if (has(BoardDefect::kRampMissing)) {
+    if (has(BoardDefect::kRampMissing) || has(BoardDefect::kRampMissingUnnoticed)) {
       return 0;
     }
     if (has(BoardDefect::kRampJumps)) {
@@ -250,6 +252,11 @@ class BrokenBoard final : public AnalogStream {
     if (has(BoardDefect::kDriveAfterStop)) {
       loopback_.put(1);
     }
+  }
+
+  bool do_drive_is_at_zero() const noexcept override {
+    return !has(BoardDefect::kNeverAtZero) &&
+           (loopback_.drive().last == 0 || has(BoardDefect::kRampMissingUnnoticed));
   }
 
   const BoardDefect defect_;
@@ -300,6 +307,7 @@ enum class CheckDefect : std::uint8_t {
   kStopsTwice,
   kIndexGoesOn,
   kSlopeFromLastRun,
+  kAtZeroWhileRunning,
 };
 
 /// A second implementation of the public functions, which can leave out any one check.
@@ -316,6 +324,9 @@ class BrokenChecks {
   const StreamFormat& format() const { return format_; }
   const DriveLimits& limits() const { return limits_; }
   bool running() const { return running_; }
+  bool drive_is_at_zero() const {
+    return loopback_.drive().last == 0 && (!running_ || has(CheckDefect::kAtZeroWhileRunning));
+  }
 
   Status start(const DriveLimits& limits) {
     if (running_ && !has(CheckDefect::kStartsTwice)) {
@@ -553,6 +564,10 @@ const Case<BoardDefect> kBrokenBoards[] = {
     {BoardDefect::kOffsetBinary, {C::kZeroIsZero}},
     {BoardDefect::kRightJustified, {C::kLeftJustified, C::kStatedLatency}},
     {BoardDefect::kDirtyLowBits, {C::kLeftJustified, C::kZeroIsZero}},
+    {BoardDefect::kNeverAtZero, {C::kTellsZero}},
+    {BoardDefect::kRampMissingUnnoticed,
+     {C::kTellsZero, C::kZeroIn256, C::kZeroAtStart, C::kSlopeKept, C::kStaysAtZero,
+      C::kStopCount}},
 };
 
 const Case<CheckDefect> kBrokenChecks[] = {
@@ -593,6 +608,7 @@ const Case<CheckDefect> kBrokenChecks[] = {
     {CheckDefect::kStopsTwice, {C::kStopTwice}},
     {CheckDefect::kIndexGoesOn, {C::kFirstFrameZero, C::kNoGap}},
     {CheckDefect::kSlopeFromLastRun, {C::kGoodBlockTaken}},
+    {CheckDefect::kAtZeroWhileRunning, {C::kTellsZero}},
 };
 
 StreamViolations set_of(const std::vector<StreamClause>& clauses) {

@@ -126,7 +126,7 @@ class InstrumentBench {
     }
   }
 
-  bool drive_is_at_zero() const { return bench.dac().last == 0 && !bench.running(); }
+  bool drive_is_at_zero() const { return bench.drive_is_at_zero(); }
 
   sim::SimBench bench;
   MemoryByteStream console;

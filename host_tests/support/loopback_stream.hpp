@@ -155,6 +155,7 @@ class LoopbackStream final : public hal::AnalogStream {
     return loopback_.ramp_to_zero(step_per_frame);
   }
   void do_stop() noexcept override { loopback_.power_off(); }
+  bool do_drive_is_at_zero() const noexcept override { return loopback_.drive().last == 0; }
 
   Loopback loopback_;
 };

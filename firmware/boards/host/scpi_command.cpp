@@ -134,7 +134,7 @@ class ScpiJob final {
   Problem stop(app::Instrument& instrument) {
     const bool was_sweeping = instrument.is_sweeping();
     instrument.abort();
-    const bool is_at_zero = bench_.dac().last == 0 && !bench_.running();
+    const bool is_at_zero = bench_.drive_is_at_zero();
     const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
     return {ExitStatus::kStopped,
             "stopped" + std::string(was_sweeping ? " during the sweep" : "") + ", " + drive};

@@ -77,7 +77,7 @@ Problem BenchJob::describe_end() const {
   if (status == Status::kOk) {
     return {};
   }
-  const bool is_at_zero = bench_.dac().last == 0 && !bench_.running();
+  const bool is_at_zero = bench_.drive_is_at_zero();
   const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
   if (status == Status::kStopped && is_at_zero) {
     return {ExitStatus::kStopped, "stopped during the sweep, " + drive};

@@ -22,7 +22,6 @@ constexpr std::array<const char*, kFaultKinds> kFaultNames = {"none",
                                                               "inverted-polarity",
                                                               "dc-drift"};
 
-constexpr double kHalfWord = 2147483648.0;  // 2^31
 constexpr double kTwoTo64 = 18446744073709551616.0;
 constexpr double kTwoToMinus53 = 1.1102230246251565e-16;
 constexpr double kMaxPercent = 100.0;
@@ -129,7 +128,7 @@ Status SimBench::configure(const BenchSettings& settings) noexcept {
   hum_step_ = static_cast<std::uint64_t>(turns_per_frame * kTwoTo64);
   hum_turn_ = sincos(kTwoPi * turns_per_frame);
 
-  adc_.half_scale = kHalfWord;
+  adc_.half_scale = hal::kWordsPerFullScale;
   adc_.words_per_code = 1;
   if (!settings.ideal_converters) {
     adc_.half_scale = static_cast<double>(std::int64_t{1} << (kAdcBits - 1U));
@@ -314,7 +313,7 @@ void SimBench::break_down() noexcept {
 
 /// What the amplifier gets while the DAC holds `word`: the highest bits of it, then distorted.
 double SimBench::drive_v(Word word) const noexcept {
-  double codes = static_cast<double>(word) / kHalfWord;
+  double codes = static_cast<double>(word) / hal::kWordsPerFullScale;
   if (!settings_.ideal_converters) {
     constexpr std::int64_t kHalfScale = std::int64_t{1} << (kDacBits - 1U);
     constexpr std::int64_t kWordsPerCode = std::int64_t{1} << (32U - kDacBits);

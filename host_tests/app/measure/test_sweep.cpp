@@ -298,6 +298,7 @@ class EchoStream final : public emax::hal::AnalogStream {
   }
   std::uint32_t do_ramp_to_zero(emax::hal::Word) noexcept override { return 256; }
   void do_stop() noexcept override {}
+  bool do_drive_is_at_zero() const noexcept override { return true; }
 
   std::uint64_t frames_ = 0;
   double spike_v_ = 0.0;

@@ -8,7 +8,7 @@ double ChannelMonitor::step() const noexcept {
     return 0.0;
   }
   const std::uint32_t lowest = all_bits_ & (~all_bits_ + 1u);
-  return static_cast<double>(lowest) / 2147483648.0;
+  return static_cast<double>(lowest) / hal::kWordsPerFullScale;
 }
 
 }  // namespace emax::app

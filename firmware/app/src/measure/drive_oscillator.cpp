@@ -9,19 +9,11 @@
 namespace emax::app {
 namespace {
 
-constexpr double kWordScale = 2147483648.0;
-constexpr double kMaxWord = 2147483647.0;
 constexpr std::uint32_t kMinRampFrames = 256;
 constexpr double kSineShare = 0.9;   // Of the slope.
 constexpr double kRampShare = 0.09;  // The rest covers rounding to words.
 constexpr double kSteepest = 1.5;    // Slope of a^2 (3 - 2a) in the middle.
 constexpr double kAmplitudeShare = 0.999;
-
-// To the nearest; a conversion drops what follows the point.
-hal::Word to_word(double words) noexcept {
-  const double word = words < 0.0 ? words - 0.5 : words + 0.5;
-  return static_cast<hal::Word>(word < kMaxWord ? word : kMaxWord);
-}
 
 }  // namespace
 
@@ -127,7 +119,7 @@ void DriveOscillator::emit(Span<hal::Word> block) noexcept {
   const SinCos angle = sincos(kTwoPi * (turns - floor(turns)));
   double sine = angle.sin;
   double before = angle.sin * step_cosine_ - angle.cos * step_sine_;
-  const double words_per_volt = kWordScale / full_scale_v_;
+  const double words_per_volt = hal::words_per_volt(full_scale_v_);
   const double twice_step_cosine = 2.0 * step_cosine_;
   const double per_frame = ramp.frames > 0 ? 1.0 / static_cast<double>(ramp.frames) : 0.0;
   const double from = from_v_ * words_per_volt;
@@ -139,7 +131,7 @@ void DriveOscillator::emit(Span<hal::Word> block) noexcept {
       const double a = static_cast<double>(ramp_frame_) * per_frame;
       amplitude += change * (a * a * (3.0 - 2.0 * a));
     }
-    word = to_word(amplitude * sine);
+    word = hal::nearest_word(amplitude * sine);
     const double next = twice_step_cosine * sine - before;
     before = sine;
     sine = next;

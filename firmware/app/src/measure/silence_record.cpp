@@ -5,11 +5,6 @@
 #include "emax/base/units.hpp"
 
 namespace emax::app {
-namespace {
-
-constexpr double kWordScale = 2147483648.0;
-
-}  // namespace
 
 double SilentChannel::hum_in_fit_v(double frequency_hz, double duration_s) const noexcept {
   double squares = 0.0;
@@ -26,7 +21,7 @@ void SilenceRecord::start(const hal::StreamFormat& format) noexcept {
   half_ = static_cast<std::uint32_t>(floor(0.5 * kDuration_s * format.sample_rate_hz)) + 1u;
   frames_ = 0;
   rise_ = Rise();
-  volts_per_word_ = format.input_full_scale_v / kWordScale;
+  volts_per_word_ = hal::volts_per_word(format.input_full_scale_v);
   for (std::size_t i = 0; i < kHumLines; ++i) {
     // A line beyond half the sample rate is refused, and its fit stays without a result.
     fits_[i] = FrameSineFit();

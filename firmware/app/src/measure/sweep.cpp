@@ -8,7 +8,6 @@
 namespace emax::app {
 namespace {
 
-constexpr double kWordScale = 2147483648.0;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
@@ -165,7 +164,7 @@ void Sweep::watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
 
 /// The largest distance of the block from the offset, which is taken to a word.
 double Sweep::reference_peak_v(const SweepWorkspace& work) const noexcept {
-  const double volts = work.format_.input_full_scale_v / kWordScale;
+  const double volts = hal::volts_per_word(work.format_.input_full_scale_v);
   const auto offset = static_cast<std::int64_t>(inputs_.silent_reference.offset_v / volts);
   std::int64_t peak = 0;
   for (std::size_t i = 0; i < work.format_.block_frames; ++i) {

@@ -7,8 +7,6 @@
 namespace emax::app {
 namespace {
 
-constexpr double kWordScale = 2147483648.0;
-constexpr double kMaxWord = 2147483647.0;
 constexpr double kMaxSettle_s = 10.0;
 constexpr double kMaxRepeat_s = 10.0;
 constexpr std::uint32_t kMaxCycles = 1000;
@@ -132,11 +130,6 @@ SettingsError check_chain(const SweepSettings& s) noexcept {
   return {};
 }
 
-hal::Word to_word(double volts, double full_scale_v) noexcept {
-  const double word = floor(volts / full_scale_v * kWordScale);
-  return static_cast<hal::Word>(word < kMaxWord ? word : kMaxWord);
-}
-
 }  // namespace
 
 SweepSettings::SweepSettings() noexcept : frequency_hz{}, frequency_count(0) {
@@ -176,8 +169,10 @@ SettingsError check(const SweepSettings& settings, const hal::StreamFormat& form
 
 hal::DriveLimits drive_limits(const SweepSettings& settings,
                               const hal::StreamFormat& format) noexcept {
-  return {to_word(settings.drive_limit_v, format.drive_full_scale_v),
-          to_word(settings.slew_v_per_s / format.sample_rate_hz, format.drive_full_scale_v)};
+  const double full_scale_v = format.drive_full_scale_v;
+  const double step_v = settings.slew_v_per_s / format.sample_rate_hz;
+  return {hal::greatest_word_within(settings.drive_limit_v, full_scale_v),
+          hal::greatest_word_within(step_v, full_scale_v)};
 }
 
 }  // namespace emax::app

@@ -65,7 +65,7 @@ void reset() noexcept {
 bool lead_drive_to_zero() noexcept {
   sim::SimBench& stream = instance.stream();
   stream.stop();
-  return stream.dac().last == 0 && !stream.running();
+  return stream.drive_is_at_zero();
 }
 
 void write_polled(Span<const char> text) noexcept { instance.console().write_polled(text); }

@@ -7,6 +7,7 @@
 
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
+#include "emax/hal/word.hpp"
 
 namespace emax::hal {
 
@@ -14,11 +15,6 @@ namespace emax::hal {
 inline constexpr std::size_t kMaxBlockFrames = 64;
 /// After a fault the drive is at zero within this many frames.
 inline constexpr std::size_t kMaxRampFrames = 256;
-
-/// A sample as a signed word, left-justified: full scale is 2^31 and zero volts are 0, whatever the
-/// converter's width. A converter of b bits leaves the lowest 32 - b bits of an input word zero,
-/// and takes its drive from the highest b bits.
-using Word = std::int32_t;
 
 /// What a stream is built for. Constant for the life of the object.
 struct StreamFormat {
@@ -109,6 +105,10 @@ class AnalogStream {
 
   bool running() const noexcept { return running_; }
 
+  /// @returns True if nothing runs and the DAC puts out zero. The board answers from its converter,
+  ///          so a drive that did not get to zero shows. Also for fault handlers: changes nothing.
+  bool drive_is_at_zero() const noexcept { return !running_ && do_drive_is_at_zero(); }
+
  protected:
   constexpr explicit AnalogStream(const StreamFormat& format) noexcept : format_(format) {}
   ~AnalogStream() = default;
@@ -135,6 +135,10 @@ class AnalogStream {
   /// Stops the converters, also those that did not start in full. The drive is at zero by then and
   /// stays there.
   virtual void do_stop() noexcept = 0;
+
+  /// @returns True if the word that the DAC holds is 0: read back from it where it can be, else the
+  ///          last word that went out. Does not wait.
+  virtual bool do_drive_is_at_zero() const noexcept = 0;
 
   bool within_limits(Span<const Word> drive) const noexcept;
   std::uint32_t halt() noexcept;

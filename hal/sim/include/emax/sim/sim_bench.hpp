@@ -163,6 +163,7 @@ class SimBench final : public hal::AnalogStream {
                             Span<hal::Frame> response) noexcept override;
   std::uint32_t do_ramp_to_zero(hal::Word step_per_frame) noexcept override;
   void do_stop() noexcept override;
+  bool do_drive_is_at_zero() const noexcept override { return dac_.last == 0; }
 
   /// From a sensor to its ADC.
   struct Channel {
