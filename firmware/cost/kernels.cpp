@@ -20,7 +20,6 @@ constexpr std::size_t kBlock = hal::kMaxBlockFrames;
 constexpr std::size_t kBlocks = 100;
 constexpr double kFrequency_hz = 1000.0;
 constexpr double kRate_hz = 100000.0;
-constexpr double kOffset_v = 0.003;
 /// A hundredth of full scale, about what a sweep needs.
 constexpr double kDrive = 2e7;
 
@@ -41,9 +40,10 @@ double sine_at(std::size_t sample) noexcept {
 }
 
 /// As a sweep does it, of both channels.
-Status count_frame_sine_fit(app::FrameSineFit& fit, Rows& rows) noexcept {
+Status count_frame_sine_fit(FrameSineFit& fit, Rows& rows) noexcept {
   const hal::StreamFormat format = board::board().stream().format();
-  const Status status = fit.start(kFrequency_hz, format);
+  const Status status = fit.start(kFrequency_hz, format.sample_rate_hz,
+                                  hal::volts_per_word(format.input_full_scale_v));
   Ticks ticks = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
     std::array<hal::Frame, kBlock> frames = {};
@@ -51,26 +51,11 @@ Status count_frame_sine_fit(app::FrameSineFit& fit, Rows& rows) noexcept {
       const auto word = static_cast<hal::Word>(kDrive * sine_at(block * kBlock + i));
       frames[i] = {word, word};
     }
-    ticks += ticks_of([&] { fit.add(frames); });
+    ticks += ticks_of([&] { fit.add(Span<const hal::Frame>(frames)); });
   }
   rows.add("frame_sine_fit_sample", mean(ticks, 2 * kBlocks * kBlock));
   rows.add("frame_sine_fit_result",
            instructions_in([&] { number_sink = fit.reference().amplitude_v; }));
-  return status;
-}
-
-Status count_sine_fit(SineFit& fit, Rows& rows) noexcept {
-  const Status status = fit.start(kFrequency_hz, kRate_hz);
-  Ticks ticks = 0;
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    std::array<double, kBlock> samples_v = {};
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      samples_v[i] = kOffset_v + sine_at(block * kBlock + i);
-    }
-    ticks += ticks_of([&] { fit.add(samples_v); });
-  }
-  rows.add("sine_fit_sample", mean(ticks, kBlocks * kBlock));
-  rows.add("sine_fit_result", instructions_in([&] { number_sink = fit.result().amplitude_v; }));
   return status;
 }
 
@@ -149,7 +134,6 @@ Status count_kernels(Rows& rows) noexcept {
   Status status = kernels.model.set(kDevice, kFilter, Criterion::kIntegralSquareError);
   const auto then = [&status](Status next) { status = status == Status::kOk ? next : status; };
   then(count_frame_sine_fit(kernels.frame_fit, rows));
-  then(count_sine_fit(kernels.fit, rows));
   then(count_bench_frame(rows));
   then(count_decimal(rows));
   then(count_phi(kernels, rows));

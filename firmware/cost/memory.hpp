@@ -7,15 +7,14 @@
 
 #include "emax/app/base/in_place.hpp"
 #include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/measure/frame_sine_fit.hpp"
 #include "emax/app/measure/sweep.hpp"
 #include "emax/base/signs.hpp"
 #include "emax/bound/energy_bound.hpp"
 #include "emax/energy/energy_search.hpp"
 #include "emax/energy/phi_buffer.hpp"
 #include "emax/energy/phi_operator.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
 #include "emax/identify/frequency_response.hpp"
-#include "emax/identify/sine_fit.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 
 namespace emax::cost {
@@ -26,8 +25,7 @@ inline constexpr std::size_t kPaperCells = 1000;
 
 struct Kernels {
   ModalModel model;
-  app::FrameSineFit frame_fit;
-  SineFit fit;
+  FrameSineFit frame_fit;
   PhiBuffer<kStoredCells> stored_phi;
   PhiOperator phi;
   std::array<std::uint32_t, sign_words(kPaperCells)> signs = {};

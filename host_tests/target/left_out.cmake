@@ -10,7 +10,6 @@ emax_leave_out(test_energy_certificate)
 # What they expect takes a long double, or a __float128, that is wider than double.
 emax_leave_out(test_decimal DecimalParse.ExactMiddlesBetweenNeighbours)
 emax_leave_out(test_frequency_response InverseCovariance.AgainstDifferences)
-emax_leave_out(test_sine_fit SineFit.MillionSamples)
 
 # newlib 3.3 is wrong there: %g leaves a zero at the end where a tie is rounded to it ("1.0e+02" for 105 with %.2g), and
 # strtod takes no exponent beyond 19999.

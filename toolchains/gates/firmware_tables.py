@@ -34,8 +34,6 @@ LEFT_OUT = {"mps2_an386": {"steps-10", "report"}}
 ROWS = {
     "frame_sine_fit_sample": "sine fit of a sweep, in integers, one sample of one channel",
     "frame_sine_fit_result": "its result for one channel",
-    "sine_fit_sample": "`SineFit`, in `double`, one sample of one channel",
-    "sine_fit_result": "its result",
     "sweep_frame": "sweep, one frame: drive, two sine fits, checks",
     "bench_frame": "simulated bench, one frame",
     "decimal_format": "17 digits of a number as text",

@@ -25,7 +25,7 @@ void SilenceRecord::start(const hal::StreamFormat& format) noexcept {
   for (std::size_t i = 0; i < kHumLines; ++i) {
     // A line beyond half the sample rate is refused, and its fit stays without a result.
     fits_[i] = FrameSineFit();
-    (void)fits_[i].start(kHum_hz[i], format);
+    (void)fits_[i].start(kHum_hz[i], format.sample_rate_hz, volts_per_word_);
   }
 }
 

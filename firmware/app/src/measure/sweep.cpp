@@ -206,7 +206,8 @@ void Sweep::end_activity(hal::AnalogStream& stream, SweepWorkspace& work) noexce
       work.device_rest2_ = 0.0;
       work.activity_ = Activity::kMeasuring;
       // The rates were checked by `start()`.
-      (void)work.fit_.start(work.target_.frequency_hz, work.format_);
+      (void)work.fit_.start(work.target_.frequency_hz, work.format_.sample_rate_hz,
+                            hal::volts_per_word(work.format_.input_full_scale_v));
       begin_repeat(work);
       return;
     case Activity::kMeasuring:

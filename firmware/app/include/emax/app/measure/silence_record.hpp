@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/app/measure/frame_sine_fit.hpp"
 #include "emax/base/span.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/identify/sine_fit.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
 
 namespace emax::app {
 

@@ -8,7 +8,6 @@
 
 #include "emax/app/measure/channel_monitor.hpp"
 #include "emax/app/measure/drive_oscillator.hpp"
-#include "emax/app/measure/frame_sine_fit.hpp"
 #include "emax/app/measure/silence_record.hpp"
 #include "emax/app/measure/sweep_budget.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
@@ -17,8 +16,8 @@
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
 #include "emax/identify/frequency_response.hpp"
-#include "emax/identify/sine_fit.hpp"
 
 namespace emax::app {
 

@@ -1,5 +1,5 @@
-// The sine fit in integers against normal equations in double with the library's sines, the words'
-// rounding, and its own arithmetic at full scale.
+// The sine fit in integers against a published vector, normal equations in double with the
+// library's sines, chance, the words' rounding, and its own arithmetic at full scale.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,25 +7,29 @@
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 #include <vector>
 
-#include "emax/app/measure/frame_sine_fit.hpp"
-#include "emax/sim/noise.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
 
 namespace {
 
+using emax::FrameSineFit;
 using emax::SineFitResult;
 using emax::Span;
 using emax::Status;
-using emax::app::FrameSineFit;
-using emax::hal::Frame;
-using emax::hal::StreamFormat;
-using emax::hal::Word;
+using Word = std::int32_t;
+
+// As a board's stream has it; nothing but the two words matters.
+struct Frame {
+  Word reference;
+  Word device;
+};
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFullScale_v = 10.0;
-constexpr StreamFormat kFormat = {100000.0, 10.0, kFullScale_v, 64, 0};
-constexpr double kWordsPerVolt = 2147483648.0 / kFullScale_v;
+constexpr double kRate_hz = 100000.0;
+constexpr double kWordsPerVolt = 2147483648.0 / 10.0;
+constexpr double kVoltsPerWord = 1.0 / kWordsPerVolt;
 
 struct Wave {
   double amplitude_v;
@@ -35,8 +39,7 @@ struct Wave {
 };
 
 double angle_of(std::size_t frame, double frequency_hz) {
-  return 2.0 * kPi *
-         std::fmod(static_cast<double>(frame) * frequency_hz / kFormat.sample_rate_hz, 1.0);
+  return 2.0 * kPi * std::fmod(static_cast<double>(frame) * frequency_hz / kRate_hz, 1.0);
 }
 
 // As a converter of so many bits would give it.
@@ -46,25 +49,25 @@ Word word_of(double volts, int bits) {
 }
 
 std::vector<Frame> record(std::size_t frames, double frequency_hz, const Wave& reference,
-                          const Wave& device, int bits) {
-  emax::sim::Noise noise;
-  noise.seed(7);
-  const auto volts_of = [](const Wave& wave, double angle, double z) {
-    return wave.offset_v + wave.amplitude_v * std::sin(angle + wave.phase_rad) + wave.noise_v * z;
+                          const Wave& device, int bits, unsigned seed = 7) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto volts_of = [&](const Wave& wave, double angle) {
+    return wave.offset_v + wave.amplitude_v * std::sin(angle + wave.phase_rad) +
+           wave.noise_v * normal(random);
   };
   std::vector<Frame> record;
   for (std::size_t i = 0; i < frames; ++i) {
     const double angle = angle_of(i, frequency_hz);
-    const auto z = noise.pair();
-    record.push_back({word_of(volts_of(reference, angle, z.first), bits),
-                      word_of(volts_of(device, angle, z.second), bits)});
+    const Word reference_word = word_of(volts_of(reference, angle), bits);
+    record.push_back({reference_word, word_of(volts_of(device, angle), bits)});
   }
   return record;
 }
 
 FrameSineFit fit_of(const std::vector<Frame>& frames, double frequency_hz, std::size_t block = 64) {
   FrameSineFit fit;
-  EXPECT_EQ(fit.start(frequency_hz, kFormat), Status::kOk);
+  EXPECT_EQ(fit.start(frequency_hz, kRate_hz, kVoltsPerWord), Status::kOk);
   for (std::size_t i = 0; i < frames.size(); i += block) {
     fit.add(Span<const Frame>(frames.data() + i, std::min(block, frames.size() - i)));
   }
@@ -155,6 +158,60 @@ void expect_fits(const std::vector<Frame>& frames, double frequency_hz) {
   expect_fit(fit.device(), device_v, frequency_hz);
 }
 
+TEST(FrameSineFit, PublishedVector) {
+  // y_n = n mod 5, pi/4 per sample, n = 0 to 11; y = A cos + B sin + C, time from the first sample.
+  std::vector<Frame> frames;
+  for (int n = 0; n < 12; ++n) {
+    const Word word = n % 5 * (Word{1} << 26);
+    frames.push_back({word, -word});
+  }
+  FrameSineFit fit;
+  ASSERT_EQ(fit.start(1.0, 8.0, std::ldexp(1.0, -26)), Status::kOk);
+  fit.add(Span<const Frame>(frames.data(), frames.size()));
+  const SineFitResult result = fit.reference();
+  ASSERT_EQ(result.status, Status::kOk);
+  // What the header states of a largest word of 4 V.
+  constexpr double kWithin_v = 4e-8;
+  EXPECT_NEAR(result.cosine_v, -0.09573833725177855, kWithin_v);
+  EXPECT_NEAR(result.sine_v, 0.3093073222875872, kWithin_v);
+  EXPECT_NEAR(result.offset_v, 1.6957503670703147, kWithin_v);
+  EXPECT_EQ(result.samples, 12U);
+  EXPECT_NEAR(result.amplitude_v, std::hypot(0.09573833725177855, 0.3093073222875872), kWithin_v);
+  EXPECT_NEAR(result.phase_rad, std::atan2(-0.09573833725177855, 0.3093073222875872),
+              kWithin_v / 0.3);
+  EXPECT_EQ(result.phasor().re, result.cosine_v);
+  EXPECT_EQ(result.phasor().im, -result.sine_v);
+  EXPECT_NEAR(fit.device().sine_v, -0.3093073222875872, kWithin_v);
+}
+
+TEST(FrameSineFit, ScatterIsThatOfTheory) {
+  constexpr unsigned kFits = 500;
+  constexpr std::size_t kFrames = 200;
+  constexpr double kNoise_v = 0.01;
+  double amplitude2 = 0.0;
+  double phase2 = 0.0;
+  double variance = 0.0;
+  const auto add = [&](const SineFitResult& fit, const Wave& wave) {
+    const double amplitude_error = fit.amplitude_v - wave.amplitude_v;
+    const double phase_error = (fit.phase_rad - wave.phase_rad) * wave.amplitude_v;
+    amplitude2 += amplitude_error * amplitude_error / (2 * kFits);
+    phase2 += phase_error * phase_error / (2 * kFits);
+    variance += fit.residual_std_v * fit.residual_std_v / (2 * kFits);
+  };
+  const Wave waves[] = {{1.0, 0.4, 0.1, kNoise_v}, {2.0, -1.4, -0.3, kNoise_v}};
+  for (unsigned seed = 0; seed < kFits; ++seed) {
+    const FrameSineFit fit = fit_of(record(kFrames, 1500.0, waves[0], waves[1], 24, seed), 1500.0);
+    add(fit.reference(), waves[0]);
+    add(fit.device(), waves[1]);
+  }
+  // A variance from 1000 values has a relative standard uncertainty of sqrt(2/1000), one of the
+  // residual's by 200 frames sqrt(2/200000): four of them.
+  const double expected = kNoise_v * kNoise_v * 2.0 / kFrames;
+  EXPECT_NEAR(amplitude2 / expected, 1.0, 4 * 0.045);
+  EXPECT_NEAR(phase2 / expected, 1.0, 4 * 0.045);
+  EXPECT_NEAR(variance / (kNoise_v * kNoise_v), 1.0, 4 * 0.0032);
+}
+
 TEST(FrameSineFit, SameAsNormalEquations) {
   struct Case {
     std::size_t frames;
@@ -235,23 +292,30 @@ TEST(FrameSineFit, TooFewFrames) {
   const std::vector<Frame> frames(100, {1 << 20, 1 << 20});
   fit.add(Span<const Frame>(frames.data(), 100));  // Not started.
   EXPECT_EQ(fit.reference().status, Status::kTooFewPoints);
-  ASSERT_EQ(fit.start(1000.0, kFormat), Status::kOk);
+  ASSERT_EQ(fit.start(1000.0, kRate_hz, kVoltsPerWord), Status::kOk);
   fit.add(Span<const Frame>(frames.data(), 99));
   EXPECT_EQ(fit.reference().status, Status::kTooFewPoints);
   EXPECT_EQ(fit.device().samples, 0U);
   fit.add(Span<const Frame>(frames.data(), 1));
   EXPECT_EQ(fit.reference().status, Status::kOk);
-  ASSERT_EQ(fit.start(49000.0, kFormat), Status::kOk);
+  ASSERT_EQ(fit.start(49000.0, kRate_hz, kVoltsPerWord), Status::kOk);
   fit.add(Span<const Frame>(frames.data(), 3));
   EXPECT_EQ(fit.reference().status, Status::kTooFewPoints);
 }
 
-TEST(FrameSineFit, BadFrequenciesKeepTheRunningFit) {
+TEST(FrameSineFit, BadRatesKeepTheRunningFit) {
   const auto frames = record(1000, 700.0, {1.0, 0.3, 0.2, 0.0}, {2.0, 1.3, -0.2, 0.0}, 24);
   FrameSineFit fit = fit_of(frames, 700.0);
-  for (const double bad : {0.0, -1.0, 5e4, 6e4, std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(fit.start(bad, kFormat), Status::kInvalidArgument) << bad;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {0.0, -1.0, 5e4, 6e4, nan, infinity}) {
+    EXPECT_EQ(fit.start(bad, kRate_hz, kVoltsPerWord), Status::kInvalidArgument) << bad;
+  }
+  for (const double bad : {0.0, -1e5, 1400.0, nan, infinity}) {
+    EXPECT_EQ(fit.start(700.0, bad, kVoltsPerWord), Status::kInvalidArgument) << bad;
+  }
+  for (const double bad : {0.0, -1.0, nan}) {
+    EXPECT_EQ(fit.start(700.0, kRate_hz, bad), Status::kInvalidArgument) << bad;
   }
   EXPECT_NEAR(fit.device().amplitude_v, 2.0, 1e-6);
   EXPECT_EQ(fit.device().samples, 1000U);

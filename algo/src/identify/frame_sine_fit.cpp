@@ -1,14 +1,11 @@
 // Exact sums of words over a table of 64 frames, turned into a 3x3 system of the whole record.
-#include "emax/app/measure/frame_sine_fit.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
 
 #include "emax/base/units.hpp"
 
-namespace emax::app {
+namespace emax {
 namespace {
 
-// 64 products of a word less another one, 28 bits then, and of the table's keep within 63 bits.
-constexpr hal::Word kWordUnit = 16;
-constexpr double kFullScale = 134217728.0;   // 2^27, of words in that unit.
 constexpr double kTableScale = 268435456.0;  // 2^28.
 constexpr double kTableUnit = 1.0 / kTableScale;
 constexpr std::uint64_t kMinFrames = 4;
@@ -24,14 +21,15 @@ double of_table(std::int64_t sum) noexcept { return static_cast<double>(sum) * k
 
 }  // namespace
 
-Status FrameSineFit::start(double frequency_hz, const hal::StreamFormat& format) noexcept {
-  if (!(frequency_hz > 0.0) || !(frequency_hz < 0.5 * format.sample_rate_hz) ||
-      !(frequency_hz / format.sample_rate_hz > 0.0)) {
+Status FrameSineFit::start(double frequency_hz, double sample_rate_hz,
+                           double volts_per_word) noexcept {
+  if (!(frequency_hz > 0.0) || !(frequency_hz < 0.5 * sample_rate_hz) ||
+      !(frequency_hz / sample_rate_hz > 0.0) || !(volts_per_word > 0.0)) {
     return Status::kInvalidArgument;
   }
   frequency_hz_ = frequency_hz;
-  sample_rate_hz_ = format.sample_rate_hz;
-  unit_v_ = format.input_full_scale_v / kFullScale;
+  sample_rate_hz_ = sample_rate_hz;
+  unit_v_ = volts_per_word * kWordUnit;
   const SinCos step = phase_of_frame(1);
   SinCos now = {0.0, 1.0};
   for (std::size_t i = 0; i < kTableFrames; ++i) {
@@ -56,43 +54,11 @@ SinCos FrameSineFit::phase_of_frame(std::uint64_t frame) const noexcept {
   return sincos(kTwoPi * (turns - floor(turns)));
 }
 
-void FrameSineFit::add(Span<const hal::Frame> frames) noexcept {
-  if (!(sample_rate_hz_ > 0.0) || frames.empty()) {
-    return;
-  }
-  if (frames_ == 0) {
-    reference_.base = frames[0].reference / kWordUnit;
-    device_.base = frames[0].device / kWordUnit;
-  }
-  while (!frames.empty()) {
-    const std::size_t at = frames_ % kTableFrames;
-    const std::size_t room = kTableFrames - at;
-    const std::size_t count = frames.size() < room ? frames.size() : room;
-    add_block<&hal::Frame::reference>(frames.first(count), at, reference_);
-    add_block<&hal::Frame::device>(frames.first(count), at, device_);
-    frames_ += count;
-    if (count == room) {
-      const SinCos start = phase_of_frame(frames_ - kTableFrames);
-      basis_ = basis_with(kTableFrames, start);
-      reference_.end_block(start);
-      device_.end_block(start);
-    }
-    frames = frames.from(count);
-  }
-}
-
-template <hal::Word hal::Frame::*kWord>
-void FrameSineFit::add_block(Span<const hal::Frame> frames, std::size_t at,
-                             Channel& channel) const noexcept {
-  BlockSums sums = channel.block;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const std::int32_t word = frames[i].*kWord / kWordUnit - channel.base;
-    sums.word += word;
-    sums.word_cosine += std::int64_t{word} * cosine_[at + i];
-    sums.word_sine += std::int64_t{word} * sine_[at + i];
-    sums.word2 += std::int64_t{word} * word;
-  }
-  channel.block = sums;
+void FrameSineFit::end_table() noexcept {
+  const SinCos start = phase_of_frame(frames_ - kTableFrames);
+  basis_ = basis_with(kTableFrames, start);
+  reference_.end_block(start);
+  device_.end_block(start);
 }
 
 void FrameSineFit::Channel::end_block(const SinCos& start) noexcept {
@@ -179,4 +145,4 @@ SineFitResult FrameSineFit::solve(const Channel& channel, const BasisSums& basis
   return result;
 }
 
-}  // namespace emax::app
+}  // namespace emax
