@@ -6,6 +6,7 @@
 #include "emax/base/elementary.hpp"
 
 #include "certificate_vectors.hpp"
+#include "violated_triangles.hpp"
 
 namespace emax {
 namespace {
@@ -23,8 +24,6 @@ constexpr double kFirstStep = 0.005;
 constexpr double kLastStep = 1e-5;
 /// Of the time for multipliers; then none are added, and the steps shorten further.
 constexpr double kSearchShare = 0.7;
-constexpr double kLeastViolation = 0.01;
-constexpr std::size_t kMaxNewMultipliers = 1024;
 constexpr double kDisturbance = 1e-4;
 constexpr std::size_t kRootSweeps = 1500;
 /// In the table of keys; others are a multiplier's number plus one.
@@ -364,86 +363,11 @@ void EnergyCertificate::step_multipliers(double length) noexcept {
   }
 }
 
-// The most violated inequalities of all, kept in a heap with the least of them on top.
 void EnergyCertificate::add_violated() noexcept {
-  struct Found {
-    double violation;
-    std::uint16_t i;
-    std::uint16_t j;
-    std::uint16_t k;
-    std::uint8_t kind;
-  };
-  Found heap[kMaxNewMultipliers];
-  std::size_t count = 0;
-  const std::size_t cells = grid_.cells;
-  const std::size_t limit = 2 * cells < kMaxNewMultipliers ? 2 * cells : kMaxNewMultipliers;
-  double least = kLeastViolation;
-  const auto sift = [&heap, &count](std::size_t at, const Found& found) {
-    for (;;) {
-      std::size_t child = 2 * at + 1;
-      if (child >= count) {
-        break;
-      }
-      if (child + 1 < count && heap[child + 1].violation < heap[child].violation) {
-        ++child;
-      }
-      if (!(heap[child].violation < found.violation)) {
-        break;
-      }
-      heap[at] = heap[child];
-      at = child;
-    }
-    heap[at] = found;
-  };
-  const auto keep = [&](const Found& found) {
-    if (count < limit) {
-      std::size_t at = count++;
-      while (at > 0 && found.violation < heap[(at - 1) / 2].violation) {
-        heap[at] = heap[(at - 1) / 2];
-        at = (at - 1) / 2;
-      }
-      heap[at] = found;
-    } else {
-      sift(0, found);
-    }
-    least = count == limit ? heap[0].violation : least;
-  };
-  for (std::size_t i = 0; i + 2 < cells; ++i) {
-    const double* const from_i = scratch_ + i * cells;
-    for (std::size_t j = i + 1; j + 1 < cells; ++j) {
-      const double ij = from_i[j];
-      const double* const from_j = scratch_ + j * cells;
-      constexpr std::size_t kBlock = 16;
-      for (std::size_t first = j + 1; first < cells; first += kBlock) {
-        const std::size_t last = first + kBlock < cells ? first + kBlock : cells;
-        // The largest of the four is |ij - jk| + ... in closed form: kinds 1 and 2 are
-        // ik - 1 + |ij - jk|, kinds 0 and 3 are -ik - 1 + |ij + jk|.
-        double largest = -1.0;
-        for (std::size_t k = first; k < last; ++k) {
-          const double difference = abs(ij - from_j[k]) + from_i[k];
-          const double sum = abs(ij + from_j[k]) - from_i[k];
-          const double both = difference > sum ? difference : sum;
-          largest = both > largest ? both : largest;
-        }
-        if (!(largest - 1.0 > least)) {
-          continue;
-        }
-        for (std::size_t k = first; k < last; ++k) {
-          for (std::size_t kind = 0; kind < 4; ++kind) {
-            const std::int8_t* const signs = kTriangleSigns[kind];
-            const double violation =
-                signs[0] * ij + signs[1] * from_j[k] + signs[2] * from_i[k] - 1.0;
-            if (violation > least) {
-              keep({violation, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j),
-                    static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(kind)});
-            }
-          }
-        }
-      }
-    }
-  }
-  for (std::size_t n = 0; n < count; ++n) {
-    (void)add_multiplier(heap[n].i, heap[n].j, heap[n].k, heap[n].kind, false);
+  ViolatedTriangles violated;
+  violated.search(scratch_, grid_.cells);
+  for (const ViolatedTriangle& found : violated.found()) {
+    (void)add_multiplier(found.i, found.j, found.k, found.kind, false);
   }
 }
 

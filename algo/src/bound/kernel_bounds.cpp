@@ -210,13 +210,12 @@ void KernelBounds::step() noexcept {
   }
 }
 
-void KernelBounds::fill_row(std::size_t row) noexcept {
-  constexpr std::size_t kChunk = 256;
-  const Span<const Mode> modes = model_->modes();
-  double sums[3] = {};
-  double terms[3][kChunk] = {};
-  // The trapezoidal rule: an end of the range of one formula counts half.
-  const auto add = [&](std::size_t count, bool starts, bool ends) {
+/// Sums of |f| by the trapezoidal rule, for the three orders n, a chunk of mesh points at a time.
+struct KernelBounds::RowSums {
+  static constexpr std::size_t kChunk = 256;
+
+  /// Takes the first terms; an end of the range of one formula counts half.
+  void add(std::size_t count, bool starts, bool ends) noexcept {
     for (std::size_t n = 0; n < 3; ++n) {
       for (std::size_t i = 0; i < count; ++i) {
         sums[n] += abs(terms[n][i]);
@@ -224,11 +223,28 @@ void KernelBounds::fill_row(std::size_t row) noexcept {
       sums[n] -= starts ? 0.5 * abs(terms[n][0]) : 0.0;
       sums[n] -= ends ? 0.5 * abs(terms[n][count - 1]) : 0.0;
     }
-  };
-  // s >= t: -+ integral of k^(n)(w + s - t) k(w).
-  for (std::size_t first = row; first <= intervals_; first += kChunk) {
+  }
+
+  double sums[3] = {};
+  double terms[3][kChunk] = {};
+};
+
+void KernelBounds::fill_row(std::size_t row) noexcept {
+  RowSums sums;
+  add_from_row_on(row, sums);
+  add_up_to_row(row, sums);
+  for (std::size_t n = 0; n < 3; ++n) {
+    integrals_[n][row] = sums.sums[n] * step_s_;
+  }
+}
+
+// s >= t: -+ integral of k^(n)(w + s - t) k(w).
+void KernelBounds::add_from_row_on(std::size_t row, RowSums& sums) const noexcept {
+  const Span<const Mode> modes = model_->modes();
+  auto& terms = sums.terms;
+  for (std::size_t first = row; first <= intervals_; first += RowSums::kChunk) {
     const std::size_t left = intervals_ + 1 - first;
-    const std::size_t count = left < kChunk ? left : kChunk;
+    const std::size_t count = left < RowSums::kChunk ? left : RowSums::kChunk;
     for (auto& order : terms) {
       for (std::size_t i = 0; i < count; ++i) {
         order[i] = 0.0;
@@ -250,15 +266,20 @@ void KernelBounds::fill_row(std::size_t row) noexcept {
         terms[2][i] += c2.re * re - c2.im * im;
       }
     }
-    add(count, first == row, first + count > intervals_);
+    sums.add(count, first == row, first + count > intervals_);
   }
-  // s <= t, by the distance t - s.
+}
+
+// s <= t, by the distance t - s.
+void KernelBounds::add_up_to_row(std::size_t row, RowSums& sums) const noexcept {
+  const Span<const Mode> modes = model_->modes();
+  auto& terms = sums.terms;
   const double* impulse = impulse_.data();
   const double* slope = impulse_slope_.data();
   const std::size_t end = intervals_ - row;  // T - t.
-  for (std::size_t first = 0; first <= row; first += kChunk) {
+  for (std::size_t first = 0; first <= row; first += RowSums::kChunk) {
     const std::size_t left = row + 1 - first;
-    const std::size_t count = left < kChunk ? left : kChunk;
+    const std::size_t count = left < RowSums::kChunk ? left : RowSums::kChunk;
     for (std::size_t i = 0; i < count; ++i) {
       const double late = impulse[end + first + i];
       terms[0][i] = 0.0;
@@ -277,10 +298,7 @@ void KernelBounds::fill_row(std::size_t row) noexcept {
         terms[2][i] += c2.re * ere[i] - c2.im * eim[i];
       }
     }
-    add(count, first == 0, first + count > row);
-  }
-  for (std::size_t n = 0; n < 3; ++n) {
-    integrals_[n][row] = sums[n] * step_s_;
+    sums.add(count, first == 0, first + count > row);
   }
 }
 

@@ -27,14 +27,6 @@ void fill_last_column(const PhiOperator& phi, std::size_t cells, Span<double> pa
 
 }  // namespace
 
-double PhiMatrix::diagonal_limit() const noexcept {
-  double limit = 0.0;
-  for (std::size_t i = 0; i < cells_; ++i) {
-    limit = diagonal(i) > limit ? diagonal(i) : limit;
-  }
-  return limit;
-}
-
 void PhiMatrix::multiply(Signs signs, Span<double> product) const noexcept {
   for (std::size_t i = 0; i < cells_; ++i) {
     product[i] = 0.0;

@@ -63,7 +63,10 @@ class KernelBounds {
  private:
   void fill_tables(Span<double> numbers) noexcept;
   void fill_norms() noexcept;
+  struct RowSums;
   void fill_row(std::size_t row) noexcept;
+  void add_from_row_on(std::size_t row, RowSums& sums) const noexcept;
+  void add_up_to_row(std::size_t row, RowSums& sums) const noexcept;
 
   static constexpr std::size_t kDerivatives = 5;
 

@@ -29,9 +29,6 @@ class PhiMatrix {
   }
   double diagonal(std::size_t cell) const noexcept { return packed_[row(cell)]; }
 
-  /// Not below any element of the diagonal. Cost: one look at each.
-  double diagonal_limit() const noexcept;
-
   /// product = Phi signs; both have `cells()` elements. cells^2 additions.
   void multiply(Signs signs, Span<double> product) const noexcept;
 
