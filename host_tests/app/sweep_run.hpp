@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -14,41 +13,29 @@
 
 #include "hal/bench_run.hpp"
 
-namespace emax_test {
+namespace emax::test {
 
 /// K(j 2 pi f) from its definition.
-inline std::complex<double> response_of(const emax::sim::Device& device, double sensitivity,
+inline std::complex<double> response_of(const sim::Device& device, double sensitivity,
                                         double frequency_hz) {
   const double ratio = frequency_hz / device.natural_frequency_hz;
   return sensitivity / std::complex<double>(1.0 - ratio * ratio, 2.0 * device.damping * ratio);
 }
 
-inline std::vector<double> table1_frequencies() {
-  std::ifstream file(EMAX_TEST_DATA_DIR "/djb_a1800v.csv");
-  std::string line;
-  std::getline(file, line);
-  std::vector<double> frequencies;
-  while (std::getline(file, line)) {
-    frequencies.push_back(std::stod(line));
-  }
-  EXPECT_EQ(frequencies.size(), 42U);
-  return frequencies;
-}
-
 struct SweepRun {
-  emax::sim::SimBench bench;
-  emax::app::Sweep sweep;
-  emax::app::SweepWorkspace work;
+  sim::SimBench bench;
+  app::Sweep sweep;
+  app::SweepWorkspace work;
   std::uint64_t last_step_frames = 0;  ///< Of the bench, in the step that ended the sweep.
 
-  explicit SweepRun(const emax::sim::BenchSettings& settings,
-                    const emax::hal::StreamFormat& format = emax::sim::kBenchFormat)
+  explicit SweepRun(const sim::BenchSettings& settings,
+                    const hal::StreamFormat& format = sim::kBenchFormat)
       : bench(format) {
-    EXPECT_EQ(bench.configure(settings), emax::Status::kOk);
+    EXPECT_EQ(bench.configure(settings), Status::kOk);
   }
 
-  void to_end(const emax::app::SweepSettings& settings) {
-    ASSERT_EQ(sweep.start(settings, bench, work), emax::Status::kOk);
+  void to_end(const app::SweepSettings& settings) {
+    ASSERT_EQ(sweep.start(settings, bench, work), Status::kOk);
     while (!sweep.done()) {
       const std::uint64_t before = bench.clock_frames();
       sweep.step(bench, work);
@@ -58,7 +45,7 @@ struct SweepRun {
     EXPECT_EQ(bench.dac().last, 0);
   }
 
-  void expect_limits_kept(const emax::app::SweepSettings& settings) const {
+  void expect_limits_kept(const app::SweepSettings& settings) const {
     // The 12 bits of the converter round each word by half a step, 2^19.
     const double volt = 2147483648.0 / bench.format().drive_full_scale_v;
     EXPECT_LE(bench.dac().max_amplitude, settings.drive_limit_v * volt);
@@ -67,4 +54,4 @@ struct SweepRun {
   }
 };
 
-}  // namespace emax_test
+}  // namespace emax::test

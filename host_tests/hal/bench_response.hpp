@@ -6,7 +6,7 @@
 
 #include "emax/sim/plant.hpp"
 
-namespace emax_test {
+namespace emax::test {
 
 using Complex = std::complex<double>;
 
@@ -29,7 +29,7 @@ inline Complex butterworth4(double frequency_hz, double corner_hz) {
   return result;
 }
 
-inline Complex shaker_response(const emax::sim::Shaker& shaker, double frequency_hz) {
+inline Complex shaker_response(const sim::Shaker& shaker, double frequency_hz) {
   const double ratio = frequency_hz / shaker.suspension_hz;
   const Complex high_pass =
       -ratio * ratio * low_pass(frequency_hz, shaker.suspension_hz, shaker.suspension_damping);
@@ -37,7 +37,7 @@ inline Complex shaker_response(const emax::sim::Shaker& shaker, double frequency
          low_pass(frequency_hz, shaker.armature_hz, shaker.armature_damping) * high_pass;
 }
 
-inline Complex device_response(const emax::sim::Device& device, double frequency_hz) {
+inline Complex device_response(const sim::Device& device, double frequency_hz) {
   return device.sensitivity * low_pass(frequency_hz, device.natural_frequency_hz, device.damping);
 }
 
@@ -57,16 +57,16 @@ Complex seen(const Response& response, double frequency_hz, double interval_s, d
   return sum;
 }
 
-inline Complex acceleration_seen(const emax::sim::Shaker& shaker, double frequency_hz,
+inline Complex acceleration_seen(const sim::Shaker& shaker, double frequency_hz,
                                  double interval_s) {
   return seen([&shaker](double f) { return shaker_response(shaker, f); }, frequency_hz, interval_s,
               0.0);
 }
 
-inline Complex device_seen(const emax::sim::Device& device, const emax::sim::Shaker& shaker,
+inline Complex device_seen(const sim::Device& device, const sim::Shaker& shaker,
                            double frequency_hz, double interval_s, double skew_s) {
   return seen([&](double f) { return shaker_response(shaker, f) * device_response(device, f); },
               frequency_hz, interval_s, skew_s);
 }
 
-}  // namespace emax_test
+}  // namespace emax::test

@@ -12,16 +12,16 @@
 #include "emax/hal/analog_stream.hpp"
 #include "emax/sim/sim_bench.hpp"
 
-namespace emax_test {
+namespace emax::test {
 
 /// One volt at the default full scale of 10 V.
-constexpr emax::hal::Word kVolt = 214748365;
+constexpr hal::Word kVolt = 214748365;
 /// No limit but the words' own.
-constexpr emax::hal::DriveLimits kFree = {2147483647, 2147483647};
+constexpr hal::DriveLimits kFree = {2147483647, 2147483647};
 
 /// Nothing drawn, no noise, nothing rounded to converters' steps.
-inline emax::sim::BenchSettings ideal_bench() {
-  emax::sim::BenchSettings settings;
+inline sim::BenchSettings ideal_bench() {
+  sim::BenchSettings settings;
   settings.second_harmonic = 0.0;
   settings.third_harmonic = 0.0;
   settings.reference_expanded_percent = 0.0;
@@ -36,32 +36,31 @@ inline emax::sim::BenchSettings ideal_bench() {
 }
 
 /// Cosine whose phase is exact however long it lasts, `frames` rounded down to whole blocks of 64.
-inline std::vector<emax::hal::Word> cosine(int frequency_hz, double amplitude_v, int frames) {
-  std::vector<emax::hal::Word> drive(static_cast<std::size_t>(frames - frames % 64));
+inline std::vector<hal::Word> cosine(int frequency_hz, double amplitude_v, int frames) {
+  std::vector<hal::Word> drive(static_cast<std::size_t>(frames - frames % 64));
   long long phase = 0;
-  for (emax::hal::Word& word : drive) {
+  for (hal::Word& word : drive) {
     const double turns = static_cast<double>(phase) / 100000.0;
-    word = static_cast<emax::hal::Word>(
+    word = static_cast<hal::Word>(
         std::lround(amplitude_v / 10.0 * 2147483648.0 * std::cos(6.283185307179586 * turns)));
     phase = (phase + frequency_hz) % 100000;
   }
   return drive;
 }
 
-inline std::vector<emax::hal::Word> silence(int frames) {
-  return std::vector<emax::hal::Word>(static_cast<std::size_t>(frames), 0);
+inline std::vector<hal::Word> silence(int frames) {
+  return std::vector<hal::Word>(static_cast<std::size_t>(frames), 0);
 }
 
 /// The whole response to a drive, from start to stop.
-inline std::vector<emax::hal::Frame> run(emax::sim::SimBench& bench,
-                                         const std::vector<emax::hal::Word>& drive) {
-  std::vector<emax::hal::Frame> response(drive.size());
+inline std::vector<hal::Frame> run(sim::SimBench& bench, const std::vector<hal::Word>& drive) {
+  std::vector<hal::Frame> response(drive.size());
   const std::size_t block = bench.format().block_frames;
-  EXPECT_EQ(bench.start(kFree), emax::Status::kOk);
+  EXPECT_EQ(bench.start(kFree), Status::kOk);
   EXPECT_EQ(drive.size() % block, 0U);
   for (std::size_t i = 0; i + block <= drive.size(); i += block) {
-    const emax::hal::Exchange exchange = bench.exchange({&drive[i], block}, {&response[i], block});
-    EXPECT_EQ(exchange.status, emax::Status::kOk);
+    const hal::Exchange exchange = bench.exchange({&drive[i], block}, {&response[i], block});
+    EXPECT_EQ(exchange.status, Status::kOk);
     EXPECT_EQ(exchange.first_frame, i);
   }
   bench.stop();
@@ -70,14 +69,14 @@ inline std::vector<emax::hal::Frame> run(emax::sim::SimBench& bench,
 
 enum class Channel { kReference, kDevice };
 
-inline double volts(const emax::hal::Frame& frame, Channel channel) {
+inline double volts(const hal::Frame& frame, Channel channel) {
   return 10.0 / 2147483648.0 * (channel == Channel::kDevice ? frame.device : frame.reference);
 }
 
 /// Complex amplitude over whole periods, as of a cosine that starts with frame 0.
-inline std::complex<double> component(const std::vector<emax::hal::Frame>& response,
-                                      Channel channel, int first, int frames, double frequency_hz,
-                                      const emax::hal::StreamFormat& format) {
+inline std::complex<double> component(const std::vector<hal::Frame>& response, Channel channel,
+                                      int first, int frames, double frequency_hz,
+                                      const hal::StreamFormat& format) {
   std::complex<double> sum = 0.0;
   for (int i = 0; i < frames; ++i) {
     const double turns = frequency_hz / format.sample_rate_hz * (first + i);
@@ -87,4 +86,4 @@ inline std::complex<double> component(const std::vector<emax::hal::Frame>& respo
   return sum * (2.0 / frames);
 }
 
-}  // namespace emax_test
+}  // namespace emax::test

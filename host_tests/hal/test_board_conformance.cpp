@@ -13,23 +13,10 @@
 #include "support/memory_byte_stream.hpp"
 #include "support/memory_store.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Span;
-using emax::Status;
-using emax::hal::StoreFormat;
-using emax::test::ByteStreamClause;
-using emax::test::ClockClause;
-using emax::test::ManualClock;
-using emax::test::ManualWatchdog;
-using emax::test::MemoryByteStream;
-using emax::test::MemoryStore;
-using emax::test::StoreClause;
-using emax::test::violated_by_byte_stream;
-using emax::test::violated_by_clock;
-using emax::test::violated_by_store;
-using emax::test::violated_by_watchdog;
-using emax::test::WatchdogClause;
+using hal::StoreFormat;
 
 constexpr std::size_t kRoom = 300;
 constexpr StoreFormat kStoreFormat = {3, 64, 8};
@@ -102,7 +89,7 @@ TEST(ByteStreamConformance, EachClauseFindsItsBrokenConsole) {
 }
 
 /// A board that claims to have moved more bytes than there were.
-class BoastingConsole final : public emax::hal::ByteStream {
+class BoastingConsole final : public hal::ByteStream {
  public:
   void connect(bool connected) { connected_ = connected; }
   int calls() const { return calls_; }
@@ -332,11 +319,11 @@ TEST(Store, ProgramsWholeUnitsOnceAndInOrder) {
   store.cut_power_after(64 + 8);
   EXPECT_EQ(store.write(1, next), Status::kHardwareFault);
   EXPECT_EQ(store.at(1, 7), 3);
-  EXPECT_EQ(store.at(1, 9), emax::hal::kErasedByte);
+  EXPECT_EQ(store.at(1, 9), hal::kErasedByte);
 }
 
 /// A memory one byte of which always reads the same.
-class StuckStore final : public emax::hal::Store {
+class StuckStore final : public hal::Store {
  public:
   explicit StuckStore(const StoreFormat& format) : Store(format) {}
 
@@ -373,3 +360,4 @@ TEST(Store, FormatsOutsideTheirRangesAreNotWritten) {
 }
 
 }  // namespace
+}  // namespace emax::test

@@ -16,32 +16,17 @@
 #include "hal/bench_response.hpp"
 #include "hal/bench_run.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Status;
-using emax::hal::Frame;
-using emax::hal::kMaxRampFrames;
-using emax::hal::StreamFormat;
-using emax::hal::Word;
-using emax::sim::BenchSettings;
-using emax::sim::BenchTruth;
-using emax::sim::kBenchFormat;
-using emax::sim::SimBench;
-using emax_test::acceleration_seen;
-using emax_test::Channel;
-using emax_test::Complex;
-using emax_test::component;
-using emax_test::cosine;
-using emax_test::device_response;
-using emax_test::device_seen;
-using emax_test::ideal_bench;
-using emax_test::kFree;
-using emax_test::kTurn;
-using emax_test::kVolt;
-using emax_test::run;
-using emax_test::shaker_response;
-using emax_test::silence;
-using emax_test::volts;
+using hal::Frame;
+using hal::kMaxRampFrames;
+using hal::StreamFormat;
+using hal::Word;
+using sim::BenchSettings;
+using sim::BenchTruth;
+using sim::kBenchFormat;
+using sim::SimBench;
 
 constexpr double kInterval_s = 1e-5;
 constexpr int kWindow = 10000;
@@ -223,7 +208,7 @@ TEST(SimBench, StopEmptiesThePipeline) {
   std::array<Word, 64> zero = {};
   std::array<Frame, 64> frames = {};
   for (std::uint64_t block = 0; block < 3; ++block) {
-    const emax::hal::Exchange exchange = bench.exchange(zero, frames);
+    const hal::Exchange exchange = bench.exchange(zero, frames);
     EXPECT_EQ(exchange.status, Status::kOk);
     EXPECT_EQ(exchange.first_frame, 64 * block);
   }
@@ -493,7 +478,7 @@ TEST(SimBench, BuiltAnewItStartsAsNew) {
   BenchSettings faulty;
   faulty.seed = 3;
   faulty.hum_hz = 61.0;
-  faulty.fault = {emax::sim::FaultKind::kSwappedChannels, 100};
+  faulty.fault = {sim::FaultKind::kSwappedChannels, 100};
   SimBench used;
   ASSERT_EQ(used.configure(faulty), Status::kOk);
   run(used, cosine(160, 2.0, 6400));
@@ -599,3 +584,4 @@ TEST(SimBench, RefusesBadFormats) {
 }
 
 }  // namespace
+}  // namespace emax::test

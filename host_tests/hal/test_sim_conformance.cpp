@@ -7,19 +7,14 @@
 
 #include "hal/stream_conformance.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Status;
-using emax::hal::StreamFormat;
-using emax::sim::BenchSettings;
-using emax::sim::FaultKind;
-using emax::sim::kBenchFormat;
-using emax::sim::SimBench;
-using emax::test::DriveProbe;
-using emax::test::names_of;
-using emax::test::StreamExpectations;
-using emax::test::StreamFault;
-using emax::test::violated_clauses;
+using hal::StreamFormat;
+using sim::BenchSettings;
+using sim::FaultKind;
+using sim::kBenchFormat;
+using sim::SimBench;
 
 class Bench {
  public:
@@ -38,7 +33,7 @@ class Bench {
   SimBench& stream() { return bench_; }
   double now_s() const { return bench_.now_s(); }
   DriveProbe drive() const {
-    const emax::sim::DacRecord& dac = bench_.dac();
+    const sim::DacRecord& dac = bench_.dac();
     return {dac.last, dac.max_amplitude, dac.max_step, dac.frames, dac.frames_since_nonzero};
   }
 
@@ -97,7 +92,7 @@ TEST(SimConformance, NoisyBench) {
 }
 
 TEST(SimConformance, AnyBlockLengthAndLatency) {
-  const std::uint32_t formats[][2] = {{1, 0}, {7, emax::sim::kMaxLatencyFrames}, {64, 1}};
+  const std::uint32_t formats[][2] = {{1, 0}, {7, sim::kMaxLatencyFrames}, {64, 1}};
   for (const auto& [block, latency] : formats) {
     const StreamFormat format = {100000.0, 10.0, 10.0, block, latency};
     EXPECT_EQ(violated_by_bench(format, quiet_settings(), expectations()), "none")
@@ -106,3 +101,4 @@ TEST(SimConformance, AnyBlockLengthAndLatency) {
 }
 
 }  // namespace
+}  // namespace emax::test

@@ -13,27 +13,21 @@
 
 #include "hal/bench_run.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Status;
-using emax::hal::Exchange;
-using emax::hal::Frame;
-using emax::hal::kMaxRampFrames;
-using emax::hal::Word;
-using emax::sim::BenchSettings;
-using emax::sim::FaultKind;
-using emax::sim::kFaultKinds;
-using emax::sim::kOffsetClimbPerSecond_v;
-using emax::sim::kSaturationFactor;
-using emax::sim::name_of;
-using emax::sim::parse_fault;
-using emax::sim::SimBench;
-using emax_test::Channel;
-using emax_test::cosine;
-using emax_test::ideal_bench;
-using emax_test::kVolt;
-using emax_test::run;
-using emax_test::volts;
+using hal::Exchange;
+using hal::Frame;
+using hal::kMaxRampFrames;
+using hal::Word;
+using sim::BenchSettings;
+using sim::FaultKind;
+using sim::kFaultKinds;
+using sim::kOffsetClimbPerSecond_v;
+using sim::kSaturationFactor;
+using sim::name_of;
+using sim::parse_fault;
+using sim::SimBench;
 
 constexpr int kFrames = 6400;
 constexpr std::size_t kAt = 3001;  // Inside a block.
@@ -264,3 +258,4 @@ TEST(SimFaults, RefusesAnUnknownKind) {
 }
 
 }  // namespace
+}  // namespace emax::test

@@ -5,18 +5,16 @@
 
 #include "emax/sim/matrix_exponential.hpp"
 
+namespace emax::sim {
 namespace {
 
-using emax::sim::kMatrixOrder;
-using emax::sim::Matrix;
-
-void exponentiate(Matrix& matrix) {
+void exponentiate_in_place(Matrix& matrix) {
   Matrix scratch;
   // What it holds does not matter.
   for (auto& row : scratch) {
     row.fill(std::numeric_limits<double>::quiet_NaN());
   }
-  emax::sim::exponentiate(matrix, scratch);
+  exponentiate(matrix, scratch);
 }
 
 // A few roundings per product, and each squaring doubles what there is.
@@ -24,7 +22,7 @@ constexpr double kRelative = 1e-14;
 
 TEST(MatrixExponential, OfZeroIsOne) {
   Matrix matrix = {};
-  exponentiate(matrix);
+  exponentiate_in_place(matrix);
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     for (std::size_t j = 0; j < kMatrixOrder; ++j) {
       EXPECT_EQ(matrix[i][j], i == j ? 1.0 : 0.0);
@@ -37,7 +35,7 @@ TEST(MatrixExponential, OfADiagonal) {
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     matrix[i][i] = static_cast<double>(i) * 0.7 - 5.0;
   }
-  exponentiate(matrix);
+  exponentiate_in_place(matrix);
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     const double expected = std::exp(static_cast<double>(i) * 0.7 - 5.0);
     // Relative to the largest element: squaring keeps absolute accuracy.
@@ -53,7 +51,7 @@ TEST(MatrixExponential, OfARotationThatDecays) {
     matrix[4][4] = decay;
     matrix[3][4] = -angle;
     matrix[4][3] = angle;
-    exponentiate(matrix);
+    exponentiate_in_place(matrix);
     // One rounding of the angle itself turns the result by its last digit.
     const double tolerance = kRelative * (1.0 + angle) * std::exp(decay);
     EXPECT_NEAR(matrix[3][3], std::exp(decay) * std::cos(angle), tolerance) << angle;
@@ -74,7 +72,7 @@ TEST(MatrixExponential, OfAJordanBlockAndItsZeros) {
       matrix[i][i - 1] = 1.0;
     }
   }
-  exponentiate(matrix);
+  exponentiate_in_place(matrix);
   for (std::size_t i = 0; i < kMatrixOrder; ++i) {
     for (std::size_t j = 0; j < kMatrixOrder; ++j) {
       if (j > i) {
@@ -93,9 +91,10 @@ TEST(MatrixExponential, OfAnInputAsOneMoreState) {
   Matrix matrix = {};
   matrix[0][0] = kRate;
   matrix[0][10] = 2.5;
-  exponentiate(matrix);
+  exponentiate_in_place(matrix);
   EXPECT_NEAR(matrix[0][10], 2.5 * std::expm1(kRate) / kRate, kRelative);
   EXPECT_EQ(matrix[10][10], 1.0);
 }
 
 }  // namespace
+}  // namespace emax::sim

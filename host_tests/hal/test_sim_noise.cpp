@@ -7,10 +7,8 @@
 
 #include "emax/sim/noise.hpp"
 
+namespace emax::sim {
 namespace {
-
-using emax::sim::Noise;
-using emax::sim::NoisePair;
 
 constexpr std::size_t kPairs = 2000000;
 
@@ -174,3 +172,4 @@ TEST(SimNoise, NormalDraws) {
 }
 
 }  // namespace
+}  // namespace emax::sim

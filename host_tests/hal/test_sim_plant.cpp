@@ -9,17 +9,13 @@
 
 #include "hal/bench_response.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Status;
-using emax::sim::Device;
-using emax::sim::Plant;
-using emax::sim::PlantOutput;
-using emax::sim::Shaker;
-using emax_test::acceleration_seen;
-using emax_test::Complex;
-using emax_test::device_seen;
-using emax_test::kTurn;
+using sim::Device;
+using sim::Plant;
+using sim::PlantOutput;
+using sim::Shaker;
 
 constexpr double kInterval_s = 1e-5;
 constexpr int kWindow = 10000;  // Whole periods of any multiple of 10 Hz.
@@ -188,3 +184,4 @@ TEST(SimPlant, RefusesAndKeepsWhatItHad) {
 }
 
 }  // namespace
+}  // namespace emax::test

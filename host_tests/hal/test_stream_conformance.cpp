@@ -13,27 +13,15 @@
 #include "hal/stream_conformance.hpp"
 #include "support/loopback_stream.hpp"
 
+namespace emax::test {
 namespace {
 
-using emax::Span;
-using emax::Status;
-using emax::hal::AnalogStream;
-using emax::hal::DriveLimits;
-using emax::hal::Exchange;
-using emax::hal::Frame;
-using emax::hal::StreamFormat;
-using emax::hal::Word;
-using emax::test::DriveProbe;
-using emax::test::kLoopbackFormat;
-using emax::test::kStreamClauses;
-using emax::test::Loopback;
-using emax::test::LoopbackStream;
-using emax::test::names_of;
-using emax::test::StreamClause;
-using emax::test::StreamExpectations;
-using emax::test::StreamFault;
-using emax::test::StreamViolations;
-using emax::test::violated_clauses;
+using hal::AnalogStream;
+using hal::DriveLimits;
+using hal::Exchange;
+using hal::Frame;
+using hal::StreamFormat;
+using hal::Word;
 
 constexpr Word kMost = std::numeric_limits<Word>::max();
 constexpr Word kLeast = std::numeric_limits<Word>::min();
@@ -88,7 +76,7 @@ StreamFormat format_of(BoardDefect defect) {
     format.sample_rate_hz = std::numeric_limits<double>::quiet_NaN();
   }
   if (defect == BoardDefect::kBlockTooLong) {
-    format.block_frames = emax::hal::kMaxBlockFrames + 1;
+    format.block_frames = hal::kMaxBlockFrames + 1;
   }
   return format;
 }
@@ -677,3 +665,4 @@ TEST(StreamConformance, EveryClauseHasABrokenStream) {
 }
 
 }  // namespace
+}  // namespace emax::test

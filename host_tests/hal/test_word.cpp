@@ -4,13 +4,8 @@
 
 #include "emax/hal/word.hpp"
 
+namespace emax::hal {
 namespace {
-
-using emax::hal::greatest_word_within;
-using emax::hal::kGreatestWord;
-using emax::hal::nearest_word;
-using emax::hal::volts_per_word;
-using emax::hal::words_per_volt;
 
 // Full scales that are powers of two, so that all quotients are exact.
 TEST(Word, VoltsAndBack) {
@@ -43,3 +38,4 @@ TEST(Word, AWordOfALimitIsNeverAboveIt) {
 }
 
 }  // namespace
+}  // namespace emax::hal

@@ -11,14 +11,11 @@
 #include "desk/files/rounding.hpp"
 #include "support/string_sink.hpp"
 
+namespace emax::host {
 namespace {
 
-using emax::app::TextWriter;
-using emax::host::characters_in;
-using emax::host::printable;
-using emax::host::rounded_up;
-using emax::host::shortened;
-using emax::test::text_of;
+using app::TextWriter;
+using test::text_of;
 
 std::string repeated(const std::string& text, int count) {
   std::string all;
@@ -92,3 +89,4 @@ TEST(RoundedUp, LeavesWhatHasSoFewDigits) {
 }
 
 }  // namespace
+}  // namespace emax::host

@@ -3,14 +3,13 @@
 
 #include <cmath>
 #include <complex>
-#include <cstdio>
-#include <fstream>
 #include <random>
 #include <string>
 
 #include "emax/app/evaluate/evaluation.hpp"
 
 #include "support/paper_device.hpp"
+#include "support/table1.hpp"
 
 namespace emax::test {
 
@@ -23,30 +22,6 @@ inline app::Settings quick_settings() {
   settings.trials = 1000;
   settings.trend_count = 0;
   return settings;
-}
-
-inline const std::string& table1_path() {
-  static const std::string path = EMAX_TEST_DATA_DIR "/djb_a1800v.csv";
-  return path;
-}
-
-/// The paper's Table 1, read with the host's own functions.
-inline FrequencyResponse table1() {
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
-  FrequencyResponse points;
-  std::ifstream file(table1_path());
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    ResponsePoint p;
-    std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &p.frequency_hz, &p.amplitude, &p.phase_rad,
-                &p.u_amplitude, &p.u_phase_rad);
-    p.phase_rad *= kDegree;
-    p.u_amplitude *= 0.5;
-    p.u_phase_rad *= 0.5 * kDegree;
-    (void)points.add(p);
-  }
-  return points;
 }
 
 /// 40 points of the device of Table 2 by its transfer function, with normal errors of `scatter`

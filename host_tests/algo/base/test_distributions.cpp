@@ -7,11 +7,8 @@
 #include "emax/base/distributions.hpp"
 #include "emax/base/wichmann_hill.hpp"
 
+namespace emax {
 namespace {
-
-using emax::box_muller;
-using emax::NormalPair;
-using emax::uniform_in;
 
 constexpr std::array<std::uint32_t, 4> kSeeds = {123456789, 345678901, 567890123, 789012345};
 // Clang warns of the implicit conversion.
@@ -27,8 +24,8 @@ TEST(UniformIn, EndsAndMiddle) {
 }
 
 TEST(BoxMuller, ClosedForm) {
-  emax::WichmannHill generator;
-  ASSERT_EQ(generator.seed(emax::Generator::k2006, kSeeds), emax::Status::kOk);
+  WichmannHill generator;
+  ASSERT_EQ(generator.seed(Generator::k2006, kSeeds), Status::kOk);
   for (int i = 0; i < 100000; ++i) {
     const double u1 = generator.next();
     const double u2 = generator.next();
@@ -59,8 +56,8 @@ TEST(BoxMuller, ZeroHasALargeFiniteRadius) {
 }
 
 TEST(BoxMuller, MomentsOfTheNormalDistribution) {
-  emax::WichmannHill generator;
-  ASSERT_EQ(generator.seed(emax::Generator::k2006, kSeeds), emax::Status::kOk);
+  WichmannHill generator;
+  ASSERT_EQ(generator.seed(Generator::k2006, kSeeds), Status::kOk);
   constexpr int kPairs = 500000;
   double sums[4] = {};
   double cross = 0.0;
@@ -88,3 +85,4 @@ TEST(BoxMuller, MomentsOfTheNormalDistribution) {
 }
 
 }  // namespace
+}  // namespace emax

@@ -5,12 +5,8 @@
 
 #include "emax/base/wichmann_hill.hpp"
 
+namespace emax {
 namespace {
-
-using emax::Generator;
-using emax::Span;
-using emax::Status;
-using emax::WichmannHill;
 
 using State = std::array<std::uint32_t, 4>;
 
@@ -247,3 +243,4 @@ TEST(WichmannHill, MomentsOfTheUniformDistribution) {
 }
 
 }  // namespace
+}  // namespace emax

@@ -12,12 +12,9 @@
 
 #include "emax/identify/frame_sine_fit.hpp"
 
+namespace emax {
 namespace {
 
-using emax::FrameSineFit;
-using emax::SineFitResult;
-using emax::Span;
-using emax::Status;
 using Word = std::int32_t;
 
 // As a board's stream has it; nothing but the two words matters.
@@ -327,3 +324,4 @@ TEST(FrameSineFit, NotIdentifiableNextToHalfTheRate) {
 }
 
 }  // namespace
+}  // namespace emax

@@ -8,12 +8,8 @@
 
 #include "emax/identify/frequency_response.hpp"
 
+namespace emax {
 namespace {
-
-using emax::ComplexCovariance;
-using emax::FrequencyResponse;
-using emax::ResponsePoint;
-using emax::Status;
 
 constexpr std::array<std::uint32_t, 4> kSeeds = {123456789, 345678901, 567890123, 789012345};
 constexpr ResponsePoint kPoint = {1000.0, 1.07, -0.4, 0.011, 0.0175};
@@ -104,12 +100,12 @@ TEST(InverseCovariance, AgainstDifferences) {
     ResponsePoint point = kPoint;
     point.phase_rad = phase_rad;
     const ComplexCovariance expected = by_differences(point);
-    const ComplexCovariance c = emax::inverse_covariance(point);
+    const ComplexCovariance c = inverse_covariance(point);
     const double size = expected.re_re + expected.im_im;
     EXPECT_NEAR(c.re_re, expected.re_re, 1e-10 * size);
     EXPECT_NEAR(c.re_im, expected.re_im, 1e-10 * size);
     EXPECT_NEAR(c.im_im, expected.im_im, 1e-10 * size);
-    const emax::Complex y = emax::inverse_response(point);
+    const Complex y = inverse_response(point);
     const std::complex<long double> exact =
         inverse(static_cast<long double>(point.amplitude), static_cast<long double>(phase_rad));
     EXPECT_NEAR(y.re, static_cast<double>(exact.real()), 1e-15);
@@ -121,8 +117,8 @@ TEST(InverseCovariance, FactorTimesItsTranspose) {
   for (const double phase_rad : {0.0, -0.4, -1.5707963, -3.1, 1.0}) {
     ResponsePoint point = kPoint;
     point.phase_rad = phase_rad;
-    const ComplexCovariance c = emax::inverse_covariance(point);
-    const emax::ComplexCholesky l = emax::inverse_cholesky(point);
+    const ComplexCovariance c = inverse_covariance(point);
+    const ComplexCholesky l = inverse_cholesky(point);
     const double size = c.re_re + c.im_im;
     EXPECT_NEAR(l.re_re * l.re_re, c.re_re, 1e-14 * size);
     EXPECT_NEAR(l.re_re * l.im_re, c.re_im, 1e-14 * size);
@@ -133,16 +129,16 @@ TEST(InverseCovariance, FactorTimesItsTranspose) {
 TEST(InverseCovariance, FactorKeepsAVerySmallUncertainty) {
   // det C = (u_A u_phase/A^3)^2, of which C itself keeps nothing here.
   const ResponsePoint point = {1000.0, 2.0, -0.7, 0.1, 1e-12};
-  const emax::ComplexCholesky l = emax::inverse_cholesky(point);
+  const ComplexCholesky l = inverse_cholesky(point);
   EXPECT_NEAR(l.re_re * l.im_im / (0.1 * 1e-12 / 8.0), 1.0, 1e-14);
 }
 
 TEST(InverseCovariance, DrawsAgreeWithTheFormula) {
-  emax::WichmannHill generator;
-  ASSERT_EQ(generator.seed(emax::Generator::k2006, kSeeds), Status::kOk);
+  WichmannHill generator;
+  ASSERT_EQ(generator.seed(Generator::k2006, kSeeds), Status::kOk);
   constexpr std::uint32_t kDraws = 100000;
-  const ComplexCovariance c = emax::inverse_covariance(kPoint);
-  const emax::DrawnCovariance drawn = emax::inverse_covariance_by_draws(kPoint, kDraws, generator);
+  const ComplexCovariance c = inverse_covariance(kPoint);
+  const DrawnCovariance drawn = inverse_covariance_by_draws(kPoint, kDraws, generator);
   ASSERT_EQ(drawn.status, Status::kOk);
   // A drawn variance has relative standard deviation sqrt(2/n), a covariance sqrt((c11 c22 +
   // c12^2)/n): four of them, and the curvature of 1/A, some (u_A/A)^2 = 1e-4 of the variance.
@@ -152,32 +148,31 @@ TEST(InverseCovariance, DrawsAgreeWithTheFormula) {
   EXPECT_NEAR(drawn.covariance.im_im / c.im_im, 1.0, 4.0 * std::sqrt(2.0 / n) + 1e-3);
   EXPECT_NEAR(drawn.covariance.re_im, c.re_im, 4.0 * cross + 1e-3 * c.re_re);
   // E(1/A) = (1/A)(1 + (u_A/A)^2), E e^(j phase) shrinks by u_phase^2/2; then scatter.
-  const emax::Complex y = emax::inverse_response(kPoint);
+  const Complex y = inverse_response(kPoint);
   const double bias = 0.011 * 0.011 / (1.07 * 1.07) - 0.5 * 0.0175 * 0.0175;
   EXPECT_NEAR(drawn.mean.re, y.re * (1.0 + bias), 4.0 * std::sqrt(c.re_re / n));
   EXPECT_NEAR(drawn.mean.im, y.im * (1.0 + bias), 4.0 * std::sqrt(c.im_im / n));
 }
 
 TEST(InverseCovariance, DrawsTakeTwoNumbersEach) {
-  emax::WichmannHill drawn;
-  emax::WichmannHill jumped;
-  ASSERT_EQ(drawn.seed(emax::Generator::k2006, kSeeds), Status::kOk);
-  ASSERT_EQ(jumped.seed(emax::Generator::k2006, kSeeds), Status::kOk);
-  ASSERT_EQ(emax::inverse_covariance_by_draws(kPoint, 50, drawn).status, Status::kOk);
+  WichmannHill drawn;
+  WichmannHill jumped;
+  ASSERT_EQ(drawn.seed(Generator::k2006, kSeeds), Status::kOk);
+  ASSERT_EQ(jumped.seed(Generator::k2006, kSeeds), Status::kOk);
+  ASSERT_EQ(inverse_covariance_by_draws(kPoint, 50, drawn).status, Status::kOk);
   jumped.jump(100);
   EXPECT_EQ(drawn.state(), jumped.state());
 }
 
 TEST(InverseCovariance, DrawsRefuseBadInput) {
-  emax::WichmannHill generator;
-  ASSERT_EQ(generator.seed(emax::Generator::k2006, kSeeds), Status::kOk);
-  EXPECT_EQ(emax::inverse_covariance_by_draws(kPoint, 2, generator).status,
-            Status::kInvalidArgument);
-  EXPECT_EQ(emax::inverse_covariance_by_draws(ResponsePoint(), 100, generator).status,
+  WichmannHill generator;
+  ASSERT_EQ(generator.seed(Generator::k2006, kSeeds), Status::kOk);
+  EXPECT_EQ(inverse_covariance_by_draws(kPoint, 2, generator).status, Status::kInvalidArgument);
+  EXPECT_EQ(inverse_covariance_by_draws(ResponsePoint(), 100, generator).status,
             Status::kInvalidArgument);
   ResponsePoint loose = kPoint;
   loose.u_amplitude = 1.0;
-  const emax::DrawnCovariance result = emax::inverse_covariance_by_draws(loose, 1000, generator);
+  const DrawnCovariance result = inverse_covariance_by_draws(loose, 1000, generator);
   EXPECT_EQ(result.status, Status::kNotPhysical);
   EXPECT_EQ(result.covariance.re_re, 0.0);
 }
@@ -215,3 +210,4 @@ TEST(FrequencyResponse, CommonPart) {
 }
 
 }  // namespace
+}  // namespace emax

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
@@ -12,6 +11,8 @@
 
 #include "emax/base/distributions.hpp"
 #include "emax/identify/wlsp.hpp"
+
+#include "support/table1.hpp"
 
 namespace {
 
@@ -26,6 +27,7 @@ using emax::Wlsp;
 using emax::WlspDraws;
 using emax::WlspDrawsResult;
 using emax::WlspFit;
+using emax::test::table1;
 
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 Quad;
@@ -41,26 +43,6 @@ WichmannHill seeded() {
   WichmannHill generator;
   EXPECT_EQ(generator.seed(emax::Generator::k2006, kSeeds), Status::kOk);
   return generator;
-}
-
-// The paper's Table 1: degrees and expanded uncertainties (k = 2).
-FrequencyResponse table1() {
-  std::ifstream file(EMAX_TEST_DATA_DIR "/djb_a1800v.csv");
-  EXPECT_TRUE(file.is_open());
-  std::string line;
-  std::getline(file, line);
-  FrequencyResponse response;
-  char comma = ',';
-  ResponsePoint p;
-  while (file >> p.frequency_hz >> comma >> p.amplitude >> comma >> p.phase_rad >> comma >>
-         p.u_amplitude >> comma >> p.u_phase_rad) {
-    p.phase_rad *= kPi / 180.0;
-    p.u_amplitude /= 2.0;
-    p.u_phase_rad *= kPi / 180.0 / 2.0;
-    EXPECT_EQ(response.add(p), Status::kOk);
-  }
-  EXPECT_EQ(response.size(), 42U);
-  return response;
 }
 
 // K from its definition, by complex arithmetic in long double.

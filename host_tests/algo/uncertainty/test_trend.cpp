@@ -5,12 +5,8 @@
 
 #include "emax/uncertainty/trend.hpp"
 
+namespace emax {
 namespace {
-
-using emax::linear_trend;
-using emax::Span;
-using emax::Status;
-using emax::Trend;
 
 TEST(Trend, TwoPointsOfThePaper) {
   const double time_s[] = {0.002, 0.010};
@@ -93,3 +89,4 @@ TEST(Trend, BadInput) {
 }
 
 }  // namespace
+}  // namespace emax

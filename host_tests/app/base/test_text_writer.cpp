@@ -11,10 +11,10 @@
 
 #include "support/string_sink.hpp"
 
+namespace emax::app {
 namespace {
 
-using emax::app::TextWriter;
-using emax::test::text_of;
+using test::text_of;
 
 std::string printed(char conversion, int digits, double value) {
   char text[512];
@@ -65,7 +65,7 @@ TEST(TextWriter, WordsAndLines) {
   EXPECT_EQ(text_of([](TextWriter& out) {
               const char part[] = {'c', 'd'};
               const char* nothing = nullptr;
-              out.text("ab").text(emax::Span<const char>(part)).text(nothing).text("").line();
+              out.text("ab").text(Span<const char>(part)).text(nothing).text("").line();
             }),
             "abcd\n");
 }
@@ -150,3 +150,4 @@ TEST(TextWriter, Columns) {
 }
 
 }  // namespace
+}  // namespace emax::app

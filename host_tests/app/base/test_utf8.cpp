@@ -6,12 +6,8 @@
 
 #include "emax/app/base/utf8.hpp"
 
+namespace emax::app {
 namespace {
-
-using emax::app::Character;
-using emax::app::first_character;
-using emax::app::is_printable;
-using emax::app::kReplacement;
 
 std::vector<std::uint32_t> codes_of(const char* text) {
   std::vector<std::uint32_t> codes;
@@ -67,3 +63,4 @@ TEST(Utf8, Printable) {
 }
 
 }  // namespace
+}  // namespace emax::app

@@ -1,6 +1,5 @@
 // The commands of the instrument: each with its answer, its wrong input, and what it makes stale.
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "support/evaluations.hpp"
 #include "support/instrument_bench.hpp"
 #include "support/string_sink.hpp"
+#include "support/table1.hpp"
 
 namespace emax {
 namespace {
@@ -254,7 +254,7 @@ TEST(Instrument, NamesWhatIsMissing) {
             "-230,\"Data corrupt or stale;no uncertainties: CALC:MOD with uS,..\"");
 }
 
-// The paper's device: the numbers that DESIGN.md lists, from enumeration and high precision.
+// The paper's device: numbers from enumeration and high precision, outside this code.
 TEST(Instrument, AnswersWhatThePapersDeviceGives) {
   InstrumentBench i;
   ASSERT_EQ(i.ask(kPaperModel), "");
@@ -351,28 +351,14 @@ TEST(Instrument, DrawsThePublishedNumbersAndGoesOnFromThere) {
 
 std::string table1_commands() {
   std::string commands;
-  std::ifstream file(test::table1_path());
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
+  for (const std::string& line : test::table1_lines()) {
     commands += "TRAC:FRES:DATA " + line + "\n";
   }
   return commands;
 }
 
-std::vector<double> first_line_of_table1() {
-  std::ifstream file(test::table1_path());
-  std::string line;
-  std::getline(file, line);
-  std::vector<double> numbers(5);
-  char comma = ',';
-  for (double& number : numbers) {
-    file >> number >> comma;
-  }
-  return numbers;
-}
-
-// DESIGN.md: S = 1.0079, f0 = 4057.3 Hz, beta = 0.2462, chi-square 8595 for 81.
+// A fit of Table 1 outside this code: S = 1.0079, f0 = 4057.3 Hz, beta = 0.2462, chi-square 8595
+// for 81 degrees of freedom.
 TEST(Instrument, IdentifiesPointsFromElsewhere) {
   InstrumentBench i;
   i.send(table1_commands());
@@ -395,7 +381,7 @@ TEST(Instrument, IdentifiesPointsFromElsewhere) {
   EXPECT_EQ(i.ask("STAT:QUES:COND?"), "256");
   const std::vector<double> points = i.numbers("FETC:FRES?");
   ASSERT_EQ(points.size(), 1U + 42 * 5);
-  const std::vector<double> first = first_line_of_table1();
+  const auto first = test::table1_numbers().front();
   EXPECT_EQ(points[1], first[0]);
   EXPECT_EQ(points[2], first[1]);
   EXPECT_NEAR(points[3], first[2], 1e-12);

@@ -10,21 +10,8 @@
 
 #include "emax/app/instrument/self_test.hpp"
 
+namespace emax::app {
 namespace {
-
-using emax::Span;
-using emax::app::ArithmeticCheck;
-using emax::app::DecimalCheck;
-using emax::app::ElementaryCheck;
-using emax::app::EnergyCheck;
-using emax::app::first_failed_check;
-using emax::app::GeneratorCheck;
-using emax::app::name_of_check;
-using emax::app::ResponseCheck;
-using emax::app::run_self_test;
-using emax::app::self_test_tables;
-using emax::app::SelfTestTables;
-using emax::app::SelfTestWorkspace;
 
 SelfTestWorkspace workspace;
 
@@ -127,3 +114,4 @@ TEST(SelfTest, TakesMemoryAsItIs) {
 }
 
 }  // namespace
+}  // namespace emax::app

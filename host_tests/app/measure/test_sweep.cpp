@@ -14,6 +14,7 @@
 #include "emax/sim/sim_bench.hpp"
 
 #include "app/sweep_run.hpp"
+#include "support/table1.hpp"
 
 namespace {
 
@@ -25,16 +26,16 @@ using emax::app::SweepStage;
 using emax::app::SweepWorkspace;
 using emax::sim::BenchSettings;
 using emax::sim::SimBench;
-using emax_test::ideal_bench;
-using emax_test::response_of;
-using emax_test::SweepRun;
+using emax::test::ideal_bench;
+using emax::test::response_of;
+using emax::test::SweepRun;
 
 TEST(SweepSettings, DefaultsAreTheFrequenciesOfTable1) {
-  const std::vector<double> table = emax_test::table1_frequencies();
+  const auto table = emax::test::table1_numbers();
   const SweepSettings settings;
   ASSERT_EQ(settings.frequency_count, table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
-    EXPECT_EQ(settings.frequency_hz[i], table[i]);
+    EXPECT_EQ(settings.frequency_hz[i], table[i][0]);
   }
 }
 

@@ -19,8 +19,8 @@ using emax::app::SweepSettings;
 using emax::app::SweepStage;
 using emax::sim::BenchSettings;
 using emax::sim::FaultKind;
-using emax_test::response_of;
-using emax_test::SweepRun;
+using emax::test::response_of;
+using emax::test::SweepRun;
 
 struct Expectation {
   FaultKind fault;

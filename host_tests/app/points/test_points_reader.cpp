@@ -1,6 +1,5 @@
 // Tables of points: the paper's own, and everything that can be wrong with one.
 #include <algorithm>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <random>
 #include <sstream>
@@ -8,12 +7,10 @@
 
 #include "emax/app/points/points_reader.hpp"
 
-namespace {
+#include "support/table1.hpp"
 
-using emax::ResponsePoint;
-using emax::Span;
-using emax::app::PointsError;
-using emax::app::PointsReader;
+namespace emax::app {
+namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
@@ -91,10 +88,7 @@ TEST(PointsReader, KnowsTheLineOfEachPoint) {
 }
 
 TEST(PointsReader, TableOfThePaper) {
-  std::ifstream file(EMAX_TEST_DATA_DIR "/djb_a1800v.csv");
-  std::stringstream text;
-  text << file.rdbuf();
-  const PointsReader reader = read(text.str());
+  const PointsReader reader = read(test::table1_text());
   ASSERT_EQ(reader.error().problem, nullptr);
   ASSERT_EQ(reader.points().size(), 42U);
   const ResponsePoint& first = reader.points().points()[0];
@@ -264,7 +258,7 @@ TEST(PointsReader, RandomBytes) {
     }
     const PointsReader reader = read(text);
     for (const ResponsePoint& point : reader.points().points()) {
-      ASSERT_EQ(emax::validate(point), emax::Status::kOk) << text;
+      ASSERT_EQ(validate(point), Status::kOk) << text;
     }
     const bool is_good = reader.error().problem == nullptr;
     ASSERT_TRUE(!is_good || reader.points().size() >= 3) << text;
@@ -275,3 +269,4 @@ TEST(PointsReader, RandomBytes) {
 }
 
 }  // namespace
+}  // namespace emax::app

@@ -1,35 +1,18 @@
 // Total uncertainties split into each point's own part and the common one.
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
-#include <string>
 
-#include "emax/app/points/points_reader.hpp"
 #include "emax/app/points/reference_uncertainty.hpp"
 #include "emax/identify/wlsp.hpp"
 
+#include "support/table1.hpp"
+
+namespace emax::app {
 namespace {
 
-using emax::FrequencyResponse;
-using emax::ResponsePoint;
-using emax::Status;
-using emax::app::CommonRemoval;
-using emax::app::remove_common;
-
-FrequencyResponse table1() {
-  std::ifstream file(EMAX_TEST_DATA_DIR "/djb_a1800v.csv");
-  EXPECT_TRUE(file.is_open());
-  emax::app::PointsReader reader;
-  reader.start();
-  std::string line;
-  while (std::getline(file, line)) {
-    reader.add_line({line.data(), line.size()});
-  }
-  EXPECT_EQ(reader.finish().problem, nullptr);
-  return reader.points();
-}
+using test::table1;
 
 TEST(ReferenceUncertainty, Table1) {
   FrequencyResponse response = table1();
@@ -45,7 +28,7 @@ TEST(ReferenceUncertainty, Table1) {
     EXPECT_EQ(after.amplitude, before.amplitude);
     EXPECT_EQ(response.common()[i], 0.0025);
   }
-  emax::Wlsp wlsp;
+  Wlsp wlsp;
   ASSERT_EQ(wlsp.fit(response), Status::kOk);
   // From a calculation outside this code, to half a unit of the last digit.
   EXPECT_NEAR(wlsp.result().model.sensitivity, 1.00645, 0.5e-5);
@@ -82,3 +65,4 @@ TEST(ReferenceUncertainty, BadPercent) {
 }
 
 }  // namespace
+}  // namespace emax::app

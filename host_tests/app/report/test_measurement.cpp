@@ -18,6 +18,7 @@
 #include "app/sweep_run.hpp"
 #include "support/evaluations.hpp"
 #include "support/json_reader.hpp"
+#include "support/report_text.hpp"
 #include "support/string_sink.hpp"
 
 namespace {
@@ -34,10 +35,12 @@ using emax::app::TextWriter;
 using emax::sim::BenchSettings;
 using emax::sim::FaultKind;
 using emax::test::evaluated;
+using emax::test::expect_well_formed;
 using emax::test::JsonReader;
 using emax::test::quick_settings;
+using emax::test::says;
+using emax::test::SweepRun;
 using emax::test::text_of;
-using emax_test::SweepRun;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const SimulatedBench kSimulated = {1, {1.037, 4073.0, 0.3182}};
@@ -91,24 +94,6 @@ JsonReader fault_json_of(const SweepRun& run, const Evaluation* refused = nullpt
   return JsonReader(text_of([&](TextWriter& out) {
     emax::app::write_measurement_json({nullptr, &measurement}, refused, out);
   }));
-}
-
-bool says(const std::string& report, const std::string& words) {
-  return report.find(words) != std::string::npos;
-}
-
-void expect_well_formed(const std::string& report) {
-  std::istringstream lines(report);
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_LE(line.size(), 100U) << line;
-    EXPECT_TRUE(line.empty() || line.back() != ' ') << "'" << line << "'";
-    for (const char character : line) {
-      EXPECT_TRUE(character >= ' ' && character <= '~') << line;
-    }
-  }
-  EXPECT_EQ(report.back(), '\n');
-  EXPECT_FALSE(says(report, " nan"));
-  EXPECT_FALSE(says(report, " inf"));
 }
 
 /// The lines of the budget: those with ten numbers, perhaps after a star.

@@ -8,6 +8,7 @@
 #include "emax/app/report/report.hpp"
 
 #include "support/evaluations.hpp"
+#include "support/report_text.hpp"
 #include "support/string_sink.hpp"
 
 namespace {
@@ -25,18 +26,16 @@ using emax::app::ReportSection;
 using emax::app::Settings;
 using emax::app::TextWriter;
 using emax::test::evaluated;
+using emax::test::expect_well_formed;
 using emax::test::kTable2;
 using emax::test::quick_settings;
+using emax::test::says;
 using emax::test::synthetic_points;
 using emax::test::table1;
 using emax::test::text_of;
 
 std::string report_of(const Evaluation& evaluation, const ReportContext& context = {}) {
   return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, context, out); });
-}
-
-bool says(const std::string& report, const std::string& words) {
-  return report.find(words) != std::string::npos;
 }
 
 /// The line that begins with these words, without blanks at its start.
@@ -49,20 +48,6 @@ std::string line_with(const std::string& report, const std::string& start) {
     }
   }
   return "no line with " + start;
-}
-
-void expect_well_formed(const std::string& report) {
-  std::istringstream lines(report);
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_LE(line.size(), 100U) << line;
-    EXPECT_TRUE(line.empty() || line.back() != ' ') << "'" << line << "'";
-    for (const char character : line) {
-      EXPECT_TRUE(character >= ' ' && character <= '~') << line;
-    }
-  }
-  EXPECT_EQ(report.back(), '\n');
-  EXPECT_FALSE(says(report, " nan"));
-  EXPECT_FALSE(says(report, " inf"));
 }
 
 TEST(Report, Table1) {

@@ -9,11 +9,10 @@
 
 #include "support/toy_instrument.hpp"
 
+namespace emax::app::scpi {
 namespace {
 
-using emax::Span;
-using emax::app::scpi::Response;
-using emax::test::ToyConsole;
+using test::ToyConsole;
 
 /// The error number of a command that must not answer and must have exactly one error; 0 for none.
 int error_of(ToyConsole& console, const std::string& command) {
@@ -404,8 +403,8 @@ TEST(ScpiResponse, IntegersAndWords) {
 
 // SCPI-99, volume 2, 21.8.1: the standard's text, a semicolon, and what the instrument adds.
 TEST(ScpiResponse, Errors) {
-  emax::app::scpi::ErrorEntry entry;
-  entry.code = emax::app::scpi::ErrorCode::kSettingsConflict;
+  ErrorEntry entry;
+  entry.code = ErrorCode::kSettingsConflict;
   EXPECT_EQ(answer([&](Response& out) { out.error(entry); }), "\"Settings conflict\"");
   entry.words = "as \"fast\" as it goes";
   EXPECT_EQ(answer([&](Response& out) { out.error(entry); }),
@@ -455,3 +454,4 @@ TEST(ScpiResponse, TooMuchIsDropped) {
 }
 
 }  // namespace
+}  // namespace emax::app::scpi

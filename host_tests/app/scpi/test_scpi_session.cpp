@@ -8,12 +8,10 @@
 
 #include "support/toy_instrument.hpp"
 
+namespace emax::app::scpi {
 namespace {
 
-using emax::Span;
-using emax::app::scpi::InputBuffer;
-using emax::app::scpi::Session;
-using emax::test::ToyConsole;
+using test::ToyConsole;
 
 constexpr char kIdentity[] = "maker,toy,0,1.0\n";
 
@@ -493,3 +491,4 @@ TEST(ScpiSession, RandomBytes) {
 }
 
 }  // namespace
+}  // namespace emax::app::scpi

@@ -8,17 +8,10 @@
 
 #include "support/toy_instrument.hpp"
 
+namespace emax::app::scpi {
 namespace {
 
-using emax::Span;
-using emax::app::scpi::ErrorCode;
-using emax::app::scpi::ErrorEntry;
-using emax::app::scpi::ErrorQueue;
-using emax::app::scpi::event_of;
-using emax::app::scpi::StatusModel;
-using emax::app::scpi::StatusRegister;
-using emax::app::scpi::text_of;
-using emax::test::ToyConsole;
+using test::ToyConsole;
 
 std::string context_of(const ErrorEntry& entry) {
   return std::string(entry.context, entry.context_length);
@@ -105,9 +98,9 @@ TEST(ScpiErrors, ClassesOfTheStandard) {
   for (const auto& entry : expected) {
     EXPECT_EQ(event_of(static_cast<ErrorCode>(entry.code)), entry.bit) << entry.code;
   }
-  EXPECT_TRUE(emax::app::scpi::is_command_error(ErrorCode::kUndefinedHeader));
-  EXPECT_FALSE(emax::app::scpi::is_command_error(ErrorCode::kExecutionError));
-  EXPECT_FALSE(emax::app::scpi::is_command_error(ErrorCode::kNoError));
+  EXPECT_TRUE(is_command_error(ErrorCode::kUndefinedHeader));
+  EXPECT_FALSE(is_command_error(ErrorCode::kExecutionError));
+  EXPECT_FALSE(is_command_error(ErrorCode::kNoError));
 }
 
 TEST(ScpiErrorQueue, FirstInFirstOut) {
@@ -371,3 +364,4 @@ TEST(ScpiStatusCommands, ThousandErrorsInARow) {
 }
 
 }  // namespace
+}  // namespace emax::app::scpi

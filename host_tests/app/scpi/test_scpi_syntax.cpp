@@ -9,25 +9,17 @@
 
 #include "support/toy_instrument.hpp"
 
+namespace emax::app::scpi {
 namespace {
 
-using emax::Span;
-using emax::app::scpi::Arity;
-using emax::app::scpi::arity_of;
-using emax::app::scpi::cut_unit;
-using emax::app::scpi::ErrorCode;
-using emax::app::scpi::HeaderMatch;
-using emax::app::scpi::InputBuffer;
-using emax::app::scpi::MessageText;
-using emax::app::scpi::ProgramUnit;
-using emax::test::ToyConsole;
+using test::ToyConsole;
 
 Span<const char> view(const std::string& text) { return {text.data(), text.size()}; }
 
 std::string text_of(Span<const char> text) { return std::string(text.data(), text.size()); }
 
 HeaderMatch match(const char* pattern, const std::string& header) {
-  return emax::app::scpi::match_header(pattern, view(header), "", 0).match;
+  return match_header(pattern, view(header), "", 0).match;
 }
 
 // SCPI-99, volume 1, 6.2.1: short form and long form only, in any case.
@@ -62,7 +54,7 @@ TEST(ScpiPattern, OptionalNodes) {
 // A path leads to rows that share all its nodes.
 TEST(ScpiPattern, RelativeToAPath) {
   const auto relative = [](const char* pattern, const char* path, std::uint16_t nodes) {
-    return emax::app::scpi::match_header(pattern, Span<const char>("TIME", 4), path, nodes);
+    return match_header(pattern, Span<const char>("TIME", 4), path, nodes);
   };
   EXPECT_EQ(relative("CALCulate:ENERgy:TIME", "CALCulate:ENERgy:STEP", 2).match, HeaderMatch::kYes);
   EXPECT_EQ(relative("CALCulate:ENERgy:TIME", "CALCulate:ENERgy:STEP", 2).nodes, 2);
@@ -115,7 +107,6 @@ TEST(ScpiPattern, NumberOfParameters) {
 }
 
 TEST(ScpiPattern, RowsThatAreNotWellFormed) {
-  using emax::app::scpi::is_well_formed;
   for (const char* pattern :
        {"*ESE", "ABORt", "INITiate[:SWEep]", "[SENSe:]SWEep:FREQuency", "ROUTe:CHANnel[1]:CLOSe",
         "SYSTem:ERRor[:NEXT]", "OUTPut[:MAIN][:STATe]"}) {
@@ -127,12 +118,11 @@ TEST(ScpiPattern, RowsThatAreNotWellFormed) {
     EXPECT_FALSE(is_well_formed(pattern, "")) << pattern;
   }
   EXPECT_FALSE(is_well_formed("*ESE", "<n"));
-  using emax::test::Toy;
-  static constexpr emax::app::scpi::Command<Toy> kTwice[] = {
-      {"ABORt", emax::app::scpi::Forms::kSet, "", "", 0, emax::test::toy::abort},
-      {"*RST", emax::app::scpi::Forms::kSet, "", "", 0, emax::test::toy::reset},
-      {"ABORt", emax::app::scpi::Forms::kQuery, "", "", 0, emax::test::toy::abort}};
-  EXPECT_EQ(emax::app::scpi::first_bad_row(kTwice), 2U);
+  using test::Toy;
+  static constexpr Command<Toy> kTwice[] = {{"ABORt", Forms::kSet, "", "", 0, test::toy::abort},
+                                            {"*RST", Forms::kSet, "", "", 0, test::toy::reset},
+                                            {"ABORt", Forms::kQuery, "", "", 0, test::toy::abort}};
+  EXPECT_EQ(first_bad_row(kTwice), 2U);
 }
 
 /// The complete messages in the buffer, each followed by '|', or '!' if it is not valid; "(long)"
@@ -347,3 +337,4 @@ TEST(ScpiUnit, HeadersThatAreNotWellFormed) {
 }
 
 }  // namespace
+}  // namespace emax::app::scpi

@@ -10,15 +10,11 @@
 
 #include "support/memory_store.hpp"
 
+namespace emax::app {
 namespace {
 
-using emax::Span;
-using emax::Status;
-using emax::app::Crc32;
-using emax::app::RecordStore;
-using emax::app::StoredRecord;
-using emax::hal::StoreFormat;
-using emax::test::MemoryStore;
+using hal::StoreFormat;
+using test::MemoryStore;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -63,7 +59,7 @@ Bytes pattern(std::size_t count, unsigned seed) {
   return bytes;
 }
 
-Status write(emax::hal::Store& store, std::uint32_t number, const Bytes& record) {
+Status write(hal::Store& store, std::uint32_t number, const Bytes& record) {
   Bytes frame(record.size() + RecordStore::kFrameBytes, 0x33);
   const Span<std::uint8_t> place = RecordStore::record_in({frame.data(), frame.size()});
   EXPECT_EQ(place.size(), record.size());
@@ -72,7 +68,7 @@ Status write(emax::hal::Store& store, std::uint32_t number, const Bytes& record)
 }
 
 // A copy of what is read, or of what cannot be any record if nothing is.
-Bytes read(emax::hal::Store& store, std::uint32_t number) {
+Bytes read(hal::Store& store, std::uint32_t number) {
   Bytes bytes(100, 0x55);
   const StoredRecord stored = RecordStore(store).read(number, {bytes.data(), bytes.size()});
   if (stored.status != Status::kOk) {
@@ -261,8 +257,7 @@ TEST(RecordStore, CopyOfAnotherFormatIsNotRead) {
 TEST(RecordStore, AThousandWritesWearBothCopiesAlike) {
   MemoryStore memory(kFormat);
   std::array<int, 2> writes = {};
-  std::array<Bytes, 2> before = {Bytes(64, emax::hal::kErasedByte),
-                                 Bytes(64, emax::hal::kErasedByte)};
+  std::array<Bytes, 2> before = {Bytes(64, hal::kErasedByte), Bytes(64, hal::kErasedByte)};
   for (unsigned i = 0; i < 1000; ++i) {
     ASSERT_EQ(write(memory, 0, pattern(20, i)), Status::kOk);
     ASSERT_EQ(read(memory, 0), pattern(20, i)) << i;
@@ -294,7 +289,7 @@ TEST(RecordStore, GenerationsGoRound) {
 }
 
 /// Memory with error correction: what a cut has left of a slot cannot be read until it is erased.
-class CorrectingStore final : public emax::hal::Store {
+class CorrectingStore final : public hal::Store {
  public:
   CorrectingStore() : Store(kFormat) {}
 
@@ -310,7 +305,7 @@ class CorrectingStore final : public emax::hal::Store {
     return Status::kOk;
   }
   Status do_erase(std::uint32_t slot) noexcept override {
-    memory_[slot].fill(emax::hal::kErasedByte);
+    memory_[slot].fill(hal::kErasedByte);
     unreadable_[slot] = false;
     return Status::kOk;
   }
@@ -343,3 +338,4 @@ TEST(RecordStore, ACopyThatCannotBeReadIsLikeNone) {
 }
 
 }  // namespace
+}  // namespace emax::app
