@@ -24,6 +24,20 @@ inline app::Settings quick_settings() {
   return settings;
 }
 
+/// A filter that passes ten times what the sensor does: the energy difference is below zero.
+inline app::Settings settings_below_zero() {
+  app::Settings settings = quick_settings();
+  settings.criterion = Criterion::kEnergyDifference;
+  settings.method = Method::kPaper;
+  settings.gain_mode = app::GainMode::kFixed;
+  settings.gain = 10.0;
+  settings.duration_s = 0.01;
+  settings.step_s = 0.001;
+  settings.cutoff_hz = 10000.0;
+  settings.filter_order = 1;
+  return settings;
+}
+
 /// 40 points of the device of Table 2 by its transfer function, with normal errors of `scatter`
 /// times the stated standard uncertainties (1 % and 0.5 degrees).
 inline FrequencyResponse synthetic_points(double scatter, unsigned seed = 1) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "emax/identify/frequency_response.hpp"
+#include "emax/identify/wlsp.hpp"
 
 namespace emax::test {
 
@@ -59,6 +60,18 @@ inline FrequencyResponse table1() {
     EXPECT_EQ(status, Status::kOk) << row[0];
   }
   return response;
+}
+
+/// A fit of it outside this code, to half a unit of the last digit given.
+inline void expect_fit_of_table1(const WlspFit& fit) {
+  EXPECT_NEAR(fit.model.sensitivity, 1.00791, 0.5e-5);
+  EXPECT_NEAR(fit.model.natural_frequency_hz, 4057.25, 0.5e-2);
+  EXPECT_NEAR(fit.model.damping, 0.24618, 0.5e-5);
+  EXPECT_NEAR(fit.u_sensitivity, 0.00113, 0.5e-5);
+  EXPECT_NEAR(fit.u_natural_frequency_hz, 2.85, 0.5e-2);
+  EXPECT_NEAR(fit.u_damping, 0.00088, 0.5e-5);
+  EXPECT_NEAR(fit.chi2, 8595.0, 0.5);
+  EXPECT_EQ(fit.dof, 81U);
 }
 
 }  // namespace emax::test

@@ -329,17 +329,8 @@ TEST(Report, MarksOfSomebodyElse) {
 }
 
 TEST(Report, EnergyDifferenceBelowZeroHasNoRms) {
-  // A filter that passes ten times what the sensor does.
-  Settings settings = quick_settings();
-  settings.criterion = Criterion::kEnergyDifference;
-  settings.method = Method::kPaper;
-  settings.gain_mode = GainMode::kFixed;
-  settings.gain = 10.0;
-  settings.duration_s = 0.01;
-  settings.step_s = 0.001;
-  settings.cutoff_hz = 10000.0;
-  settings.filter_order = 1;
-  const Evaluation& evaluation = evaluated({kTable2.estimate, {}}, settings);
+  const Evaluation& evaluation =
+      evaluated({kTable2.estimate, {}}, emax::test::settings_below_zero());
   ASSERT_LT(evaluation.energy_v2s(), 0.0);
   const std::string report = report_of(evaluation);
   expect_well_formed(report);

@@ -134,16 +134,8 @@ TEST(ReportJson, NoMonteCarloAndNoSwitch) {
 }
 
 TEST(ReportJson, EnergyDifferenceBelowZero) {
-  Settings settings = quick_settings();
-  settings.criterion = Criterion::kEnergyDifference;
-  settings.method = Method::kPaper;
-  settings.gain_mode = GainMode::kFixed;
-  settings.gain = 10.0;
-  settings.filter_order = 1;
-  settings.cutoff_hz = 10000.0;
-  settings.duration_s = 0.01;
-  settings.step_s = 0.001;
-  const JsonReader json = json_of(evaluated({kTable2.estimate, {}}, settings));
+  const JsonReader json =
+      json_of(evaluated({kTable2.estimate, {}}, emax::test::settings_below_zero()));
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("energy.criterion"), "difference");
   EXPECT_LT(json.number("energy.E"), 0.0);

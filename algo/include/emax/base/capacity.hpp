@@ -1,10 +1,10 @@
-// How much the fixed tables hold: the build may choose it, for all libraries alike.
+// How much the fixed tables hold. The build may choose it, the same for all libraries.
 #pragma once
 
 #include <cstddef>
 
 // CMake passes its cache variables of these names to the libraries and to all that link them.
-// Whoever compiles the sources otherwise defines them for everything, or for nothing.
+// A build without CMake defines them for all sources alike, or for none.
 #ifndef EMAX_MAX_SWITCHES
 #define EMAX_MAX_SWITCHES 256
 #endif
@@ -39,7 +39,7 @@ static_assert(kMaxCells >= 512 && kMaxCells <= 65536, "EMAX_MAX_CELLS is 512 to 
 static_assert(kPhiCells >= 32 && kPhiCells <= 1024, "EMAX_PHI_CELLS is 32 to 1024");
 static_assert(kMaxPoints >= 3 && kMaxPoints <= 1024, "EMAX_MAX_POINTS is 3 to 1024");
 
-/// What budgets of memory are stated for.
+/// True for the capacities that the budgets of memory are stated for.
 inline constexpr bool kHasDefaultCapacities =
     kMaxSwitches == 256 && kMaxCells == 8192 && kPhiCells == 128 && kMaxPoints == 64;
 

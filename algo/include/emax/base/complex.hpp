@@ -31,7 +31,7 @@ constexpr Complex reciprocal(Complex a) noexcept {
   return {a.re * scale, -a.im * scale};
 }
 
-/// Re(a b): what is left of a product when only the real part is wanted.
+/// Re(a b), without computing the imaginary part.
 constexpr double real_of_product(Complex a, Complex b) noexcept {
   return a.re * b.re - a.im * b.im;
 }

@@ -27,9 +27,8 @@ std::size_t format_general(double value, int significant_digits, Span<char> text
 /// As printf("%.*f", decimals, value); otherwise as `format_general()`.
 ///
 /// @param[in]  decimals 0 to 17.
-/// @param[out] text     Needs decimals + 3 characters below 10, one more for every further power of
-/// ten: at
-///                      most 328.
+/// @param[out] text     Needs decimals + 3 characters for values below 10 and one more for every
+///                      further power of ten, at most 328.
 /// @returns The characters written; 0, with nothing written, if the text is too short or `decimals`
 /// outside its range. Stack below 0.7 KiB.
 std::size_t format_fixed(double value, int decimals, Span<char> text) noexcept;
@@ -55,9 +54,10 @@ struct ParsedNumber {
 /// hexadecimal ("0x10" is 0, one character long).
 ///
 /// @returns
-/// * kOk: The nearest double, ties to even. What is nearest to a subnormal number or to 0 is that.
-/// * kInvalidArgument: Nearest to no finite double. The value is an infinity of that sign; the
-/// length is right.
+/// * kOk: The nearest double, ties to even. It may be subnormal or 0.
+/// * kInvalidArgument: Too large for a finite double. The value is an infinity of that sign, and
+/// the
+///   length is that of the number.
 /// * kSyntax: No number here; value and length are 0.
 ///
 /// One pass over the text and, beyond 19 digits, a second one over at most 768 of them; the rest

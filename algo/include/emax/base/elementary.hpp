@@ -56,7 +56,7 @@ double sqrt(double x) noexcept;
 /// The greatest integer not above x; exact. +-0, infinities and NaN come back as they are.
 double floor(double x) noexcept;
 
-/// |x|, also of -0 and infinities. A NaN stays one.
+/// |x|, also of -0 and infinities. A NaN stays a NaN.
 constexpr double abs(double x) noexcept { return x <= 0.0 ? 0.0 - x : x; }
 
 /// @returns False for infinities and NaN.
@@ -64,8 +64,9 @@ constexpr bool is_finite(double x) noexcept { return x - x == 0.0; }
 
 namespace detail {
 
-/// `sqrt()` in integers, for processors without a square root of double. On every target, so that
-/// it can be compared with the hardware: the bits are the same. Table of 48 bytes, no division.
+/// `sqrt()` in integers, for processors without a square root of double. Compiled on every target,
+/// so that tests can compare it with the hardware: the bits are the same. Table of 48 bytes, no
+/// division.
 double software_sqrt(double x) noexcept;
 
 }  // namespace detail

@@ -1,4 +1,5 @@
-// The memory of a Monte Carlo procedure, by itself: what lends it need not know the procedure.
+// The memory of a Monte Carlo procedure, in a file of its own: code that only lends this memory
+// need not know the procedure.
 #pragma once
 
 #include <cstddef>

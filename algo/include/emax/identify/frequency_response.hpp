@@ -35,7 +35,7 @@ Status validate(const ResponsePoint& point) noexcept;
 ///
 /// The uncertainties of a point are those of its own effects, independent of every other point. An
 /// effect that moves all amplitudes together (the reference's sensitivity, the gains, the mounting)
-/// is no part of them: no mean over the points makes it smaller. It stands beside them as one
+/// is not part of them, because no mean over the points makes it smaller. The table keeps it as one
 /// relative standard uncertainty per point, all of one sign, and the fit takes it as one vector.
 class FrequencyResponse {
  public:
@@ -120,7 +120,7 @@ struct DrawnCovariance {
 /// (u_A/A)^2, and by the scatter of the draws, of relative standard deviation sqrt(2/draws).
 ///
 /// @param[in]     draws     3 or more.
-/// @param[in,out] generator A seeded generator; it is left behind the last number taken.
+/// @param[in,out] generator A seeded generator; the draws take the next 2 `draws` numbers.
 /// @returns
 /// * kOk
 /// * kInvalidArgument: Fewer than 3 draws, or a point that is not valid.

@@ -8,16 +8,16 @@
 
 namespace emax {
 
-/// Samples of k at 64 points per period of its fastest mode, and where they stand.
+/// Samples k at 64 points per period of its fastest mode, and remembers how far it has come.
 struct ResponseScan {
-  /// What is looked at in one step: up to some thousand exponentials.
+  /// Samples of one step, which costs up to some thousand exponentials.
   static constexpr std::uint32_t kSamplesPerStep = 24;
 
   double step_s = 0.0;
   double slope = 0.0;       ///< Of k at the last sample.
   std::uint32_t taken = 0;  ///< Samples.
   bool running = false;
-  bool complete = false;  ///< Nothing of interest can follow; else the samples have run out.
+  bool complete = false;  ///< True if nothing of interest can follow; false if the samples ran out.
 };
 
 /// The value of k farthest from zero, to the last digits, and its time; bisects on the derivative.

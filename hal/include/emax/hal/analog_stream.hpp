@@ -23,8 +23,8 @@ struct StreamFormat {
   double input_full_scale_v = 0.0;  ///< Volts at each ADC for a word of 2^31.
   std::uint32_t block_frames = 0;   ///< Frames per block, 1 to kMaxBlockFrames.
   /// The response to the drive's frame n comes in as frame n + latency: converters, filters in
-  /// hardware and buffers. The same for every frame, after every start. The reference's; how much
-  /// later the device's input samples (the skew) is not in here.
+  /// hardware and buffers. The same for every frame, after every start. It is the latency of the
+  /// reference channel; the skew, by which the device's input samples later, is not part of it.
   std::uint32_t latency_frames = 0;
 };
 
@@ -51,10 +51,10 @@ struct Exchange {
 /// A duplex stream: each exchange hands over one block of drive and takes one block of response.
 ///
 /// The public functions check the contract once, for all boards, and call the private `do_...`
-/// functions of the board. They keep the drive safe: it starts at zero, it is checked frame by
-/// frame against the limits, and whatever goes wrong, it is led to zero along the permitted slope,
-/// within kMaxRampFrames frames. Between `stop()` (or a fault) and the first word of the next run,
-/// the drive is zero.
+/// functions of the board. They keep the drive safe: it starts at zero, every frame is checked
+/// against the limits, and after a fault the drive ramps to zero along the permitted slope, within
+/// kMaxRampFrames frames. Between `stop()` (or a fault) and the first word of the next run, the
+/// drive is zero.
 ///
 /// For one caller: no two of its functions at the same time. Cost: four comparisons per frame
 /// beside what the board does.
@@ -88,15 +88,16 @@ class AnalogStream {
   /// @returns
   /// * kNotRunning: Before `start()`, or after `stop()` or a fault. Nothing has changed.
   /// * kInvalidArgument: A wrong number of frames. Nothing has changed; the stream runs on.
-  /// * kDriveLimit: A word beyond amplitude or slope. Nothing of the block goes out; the stream has
-  ///   stopped, the drive led to zero from the last word that went out.
+  /// * kDriveLimit: A word beyond amplitude or slope. Nothing of the block goes out. The drive
+  /// ramps
+  ///   to zero from the last word that went out, and the stream stops.
   /// * kLateBlock: Nothing came in time. Stopped as above, even if the inputs are dead.
   /// * kLostBlock: The frame index has a gap: frames were lost. Stopped as above.
   /// * kHardwareFault: The board reports a fault. Stopped as above.
   /// * kOk: `response` is filled. Its first frame follows the last one of the block before.
   Exchange exchange(Span<const Word> drive, Span<Frame> response) noexcept;
 
-  /// Leads the drive to zero along the slope and stops. Safe at any time, more than once. Takes at
+  /// Ramps the drive to zero along the slope and stops. Safe at any time, more than once. Takes at
   /// most kMaxRampFrames frames, the latency and two block times; so does the end after a fault.
   ///
   /// @returns The number of frames from the last word that went out to the first zero: 0 if the
@@ -132,7 +133,7 @@ class AnalogStream {
   /// @returns The number of frames that it took, 0 if the drive is at zero.
   virtual std::uint32_t do_ramp_to_zero(Word step_per_frame) noexcept = 0;
 
-  /// Stops the converters, also those that did not start in full. The drive is at zero by then and
+  /// Stops the converters, also after a start that failed halfway. The drive is already at zero and
   /// stays there.
   virtual void do_stop() noexcept = 0;
 

@@ -16,8 +16,8 @@ class ByteStream {
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
-  /// Takes what has come in, as much as there is room for. What came before a peer went away is
-  /// still there.
+  /// Takes the bytes that have come in, as many as there is room for. Bytes that came before a peer
+  /// went away can still be read.
   ///
   /// @param[out] bytes Filled from its front; untouched behind the count returned.
   /// @returns The number of bytes taken: 0 if nothing has come in or `bytes` is empty.
@@ -29,7 +29,7 @@ class ByteStream {
   ///          room, no peer, or nothing to send. The caller keeps the rest and tries again later.
   std::size_t write(Span<const char> bytes) noexcept;
 
-  /// @returns False if a peer is known to be missing; a line that cannot know it says true.
+  /// @returns False if no peer is connected; true on a line that cannot tell.
   bool connected() const noexcept { return do_connected(); }
 
   /// @returns How many bytes came in and found no room since this was last asked. The count stays

@@ -11,9 +11,9 @@ class Clock {
   Clock(const Clock&) = delete;
   Clock& operator=(const Clock&) = delete;
 
-  /// @returns Microseconds since some moment before the first call, rounded down. Never less than
-  ///          before: where the board's count goes back, the time stands still until the count has
-  ///          caught up. For one caller, as it remembers that time: not from an interrupt.
+  /// @returns Microseconds since a fixed moment before the first call, rounded down. Never less
+  ///          than before: if the board's count goes back, the time stands still until the count
+  ///          has caught up. Not from an interrupt: the object remembers the last time.
   std::uint64_t now_us() noexcept;
 
   /// @returns The greatest step of the time that is read, in microseconds; 1 or more.

@@ -22,10 +22,10 @@ struct StoreFormat {
   std::uint32_t unit_bytes = 0;
 };
 
-/// Slots of raw bytes. It promises nothing about a slot whose write was cut: whoever needs the old
-/// record or the new one keeps them in two slots, with a checksum.
+/// Slots of raw bytes. A power cut during a write may leave anything in that slot: a caller that
+/// must keep either the old or the new record writes them to two slots in turn, with a checksum.
 ///
-/// Every wait on hardware is bounded by the board. `write()` needs kMaxUnitBytes of stack.
+/// The board bounds every wait on hardware. `write()` needs kMaxUnitBytes of stack.
 class Store {
  public:
   Store(const Store&) = delete;

@@ -7,8 +7,8 @@
 
 namespace emax::hal {
 
-/// A watchdog: once started, a pause of a period between two kicks resets the board, which starts
-/// with the drive at zero.
+/// A watchdog. Once it is started, a pause of one period without a kick resets the board, which
+/// then starts with the drive at zero.
 class Watchdog {
  public:
   Watchdog(const Watchdog&) = delete;
@@ -18,7 +18,7 @@ class Watchdog {
   ///
   /// @returns
   /// * kOk: `kick()` more often than every period from now on.
-  /// * kAlreadyRunning: The running period goes on; this is no kick.
+  /// * kAlreadyRunning: The running period goes on; this call does not count as a kick.
   /// * kHardwareFault: The timer did not start, or the board states a period of zero.
   Status start() noexcept;
 
@@ -29,8 +29,7 @@ class Watchdog {
   std::uint32_t period_us() const noexcept { return period_us_; }
   bool running() const noexcept { return running_; }
 
-  /// @returns True if the board runs because its watchdog reset it; until the next reset of any
-  ///          kind.
+  /// @returns True if the last reset of the board came from its watchdog.
   bool caused_reset() const noexcept { return do_caused_reset(); }
 
  protected:

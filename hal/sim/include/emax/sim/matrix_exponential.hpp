@@ -11,8 +11,8 @@ inline constexpr std::size_t kMatrixOrder = 11;
 /// By rows.
 using Matrix = std::array<std::array<double, kMatrixOrder>, kMatrixOrder>;
 
-/// Replaces `matrix` by e^matrix. What `scratch`, another matrix, holds before and after does not
-/// matter.
+/// Replaces `matrix` by e^matrix. `scratch` is a second matrix that is overwritten; what it holds
+/// before does not matter.
 ///
 /// Scaling and squaring with a Taylor series (Moler, Van Loan, SIAM Review 45 (2003) 3, method 3).
 /// The elements must be finite, the row sum norm below 2^20. The relative error, as the norm of the
