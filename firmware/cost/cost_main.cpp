@@ -24,7 +24,7 @@ constexpr int kBadInput = 2;
 constexpr int kFailed = 3;
 
 void wait_for_console() noexcept {
-  while (!board::board().console().sent()) {
+  while (!board::console_sent()) {
   }
 }
 
@@ -70,8 +70,8 @@ int count_all(board::Words arguments, app::TextWriter& out) noexcept {
 }
 
 int run() noexcept {
-  const Status status = board::board().start();
-  board::ConsoleSink sink(board::board().console());
+  const Status status = board::start_board();
+  board::ConsoleSink sink(board::ports().console);
   app::TextWriter out(sink);
   if (status != Status::kOk) {
     out.text(explain(status)).line();
@@ -79,7 +79,9 @@ int run() noexcept {
   }
   start_counter();
   std::array<char, board::kCommandLineRoom> line = {};
-  return count_all(board::Words({line.data(), board::read_command_line(line)}), out);
+  board::Words words({line.data(), board::read_command_line(line)});
+  (void)words.next();  // The emulator puts the path of the image in front.
+  return count_all(words, out);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ double sine_at(std::size_t sample) noexcept {
 
 /// As a sweep does it, of both channels.
 Status count_frame_sine_fit(app::FrameSineFit& fit, Rows& rows) noexcept {
-  const hal::StreamFormat format = board::board().stream().format();
+  const hal::StreamFormat format = board::ports().analog.format();
   const Status status = fit.start(kFrequency_hz, format);
   Ticks ticks = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
@@ -75,7 +75,7 @@ Status count_sine_fit(SineFit& fit, Rows& rows) noexcept {
 }
 
 Status count_bench_frame(Rows& rows) noexcept {
-  hal::AnalogStream& stream = board::board().stream();
+  hal::AnalogStream& stream = board::ports().analog;
   Status status = stream.start({1'000'000'000, 100'000'000});
   std::array<hal::Word, kBlock> drive = {};
   std::array<hal::Frame, kBlock> response = {};
