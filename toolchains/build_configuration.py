@@ -1,8 +1,9 @@
-"""Configures and builds one configuration of CMakePresets.json, and says now and then how far it is.
+"""Configures and builds one configuration of CMakePresets.json, and says how far it is.
 
 usage: build_configuration.py TITLE PRESET CMAKE
 
-Everything that CMake and the compilers say is printed; of Ninja's lines only a few. Ends with the status of what failed.
+Prints everything that CMake and the compilers say, but of Ninja's steps only one a minute. Ends with the status of what
+failed.
 """
 
 import os
@@ -11,7 +12,7 @@ import subprocess
 import sys
 import time
 
-STEP_DONE = re.compile(r"\[(\d+)/(\d+)\] ")
+STEP = re.compile(r"\[(\d+)/(\d+)\] ")
 LONGEST_SILENCE_S = 60
 
 
@@ -19,10 +20,17 @@ def main() -> int:
     title, preset, cmake = sys.argv[1:]
     begin = time.monotonic()
     say(f"{title}: {preset}, configuring")
-    configured = subprocess.run([cmake, "--preset", preset, "--log-level=NOTICE"], stdout=subprocess.PIPE, text=True, check=False)
+    configured = subprocess.run(
+        [cmake, "--preset", preset, "--log-level=NOTICE"],
+        stdout=subprocess.PIPE,  # Nothing that matters: messages and warnings go to standard error.
+        text=True,
+        errors="replace",
+        check=False,
+    )
     if configured.returncode != 0:
         print(configured.stdout, flush=True)
         return configured.returncode
+    say(f"{title}: {preset}, compiling")
     status = build(title, preset, cmake)
     if status == 0:
         say(f"{title}: {preset}, done after {time.monotonic() - begin:.0f} s")
@@ -30,18 +38,21 @@ def main() -> int:
 
 
 def build(title: str, preset: str, cmake: str) -> int:
-    environment = os.environ | {"NINJA_STATUS": "[%f/%t] "}
     process = subprocess.Popen(
-        [cmake, "--build", "--preset", preset], stdout=subprocess.PIPE, text=True, errors="replace", env=environment
+        [cmake, "--build", "--preset", preset],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=os.environ | {"NINJA_STATUS": "[%f/%t] "},
     )
-    said = 0.0
+    said = time.monotonic()
     for line in process.stdout:
-        step = STEP_DONE.match(line)
+        step = STEP.match(line)
         if not step:
             if line.strip() and line.strip() != "ninja: no work to do.":
                 print(line, end="", flush=True)
-            continue
-        if time.monotonic() - said > LONGEST_SILENCE_S:
+        elif time.monotonic() - said > LONGEST_SILENCE_S:
             say(f"{title}: {preset}, compiling, {step[1]} of {step[2]} steps done")
             said = time.monotonic()
     return process.wait()
@@ -52,4 +63,7 @@ def say(text: str) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -85,7 +85,7 @@ foreach(source IN LISTS tidied common)
 endforeach()
 
 get_property(tests DIRECTORY PROPERTY TESTS)
-set_tests_properties(${tests} PROPERTIES TIMEOUT 600)
+set_tests_properties(${tests} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT})
 
 include(${CMAKE_CURRENT_LIST_DIR}/check_boards.cmake)
 

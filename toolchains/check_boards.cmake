@@ -15,7 +15,7 @@ function(emax_add_product_gates configuration)
     --tree ${PROJECT_SOURCE_DIR}/build/${configuration} ${product})
   add_test(NAME ${name}.footprint COMMAND ${gate}footprint.py
     --budgets ${PROJECT_SOURCE_DIR}/toolchains/budgets.txt ${product})
-  set_tests_properties(${name}.symbols ${name}.footprint PROPERTIES TIMEOUT 600 LABELS ${configuration})
+  set_tests_properties(${name}.symbols ${name}.footprint PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT} LABELS ${configuration})
 endfunction()
 
 # emax_add_identical_tests(<configuration>)

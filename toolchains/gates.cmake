@@ -54,7 +54,6 @@ function(emax_gate_stack image run)
   if(run AND EMAX_BOARD_RUNNER)
     emax_add_gate(${image}.stack_measured stack_measured.py
       --calls ${EMAX_INDIRECT_CALLS} --tree ${PROJECT_BINARY_DIR} ${image})
-    set_tests_properties(${EMAX_CONFIGURATION}.gates.${image}.stack_measured PROPERTIES TIMEOUT 300)
   endif()
 endfunction()
 

@@ -1,10 +1,9 @@
 """Compares the time that each test took with its limit, after the tests have run.
 
-usage: time_limits.py CTEST TREE [--write LIST]
+usage: time_limits.py CTEST TREE
 
 TREE is a build tree, of which ctest keeps the mean time of each test. A limit must be at least ten times that, so that
-a busy machine fails nothing; exits with 1 if one is lower. With --write, the tests that take long are listed in LIST,
-without the name of the configuration: these are left out of the workflow `quick`.
+a busy machine fails nothing; exits with 1 if one is lower.
 """
 
 import json
@@ -14,12 +13,6 @@ import sys
 from pathlib import Path
 
 LEAST_FACTOR = 10
-LONG_S = 1.0
-HEAD = """\
-Tests that take more than a second on an idle PC: they get the label `long`, which the workflow `quick` leaves out.
-Written by the target long_tests, after the tests have run.
-
-"""
 
 
 def main() -> int:
@@ -28,10 +21,6 @@ def main() -> int:
     times = {test: time for test, time in times_of(tree).items() if test in limits}
     if not times:
         sys.exit(f"time_limits: no test of {tree} has run")
-    if sys.argv[3:4] == ["--write"]:
-        names = sorted({name.partition(".")[2] for name, time in times.items() if time > LONG_S})
-        Path(sys.argv[4]).write_text(HEAD + "".join(f"{name}\n" for name in names))
-        print(f"{len(names)} of {len(times)} tests take more than {LONG_S} s")
     low = {test: time for test, time in times.items() if limits[test] < LEAST_FACTOR * time}
     for test, time in sorted(low.items()):
         print(f"{test}: took {time:.1f} s, and its limit is {limits[test]:.0f} s")

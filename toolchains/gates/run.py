@@ -8,7 +8,7 @@ import threading
 from pathlib import Path
 from typing import NamedTuple
 
-TIMEOUT_S = 600
+TIMEOUT_S = 1100
 STACK_LINE = re.compile(r"stack: (\d+) of (\d+) bytes used")
 
 # Work that goes through every part: sweep, fit, search, bound, trials, trend, report.
