@@ -54,6 +54,7 @@ const Part* find(Span<const char> name) noexcept {
 
 int count_all(board::Words arguments, app::TextWriter& out) noexcept {
   Rows rows(out);
+  (void)arguments.next();  // The emulator puts the path of the image in front.
   while (!arguments.done()) {
     const Part* part = find(arguments.next());
     if (part == nullptr) {
@@ -79,9 +80,7 @@ int run() noexcept {
   }
   start_counter();
   std::array<char, board::kCommandLineRoom> line = {};
-  board::Words words({line.data(), board::read_command_line(line)});
-  (void)words.next();  // The emulator puts the path of the image in front.
-  return count_all(words, out);
+  return count_all(board::Words({line.data(), board::read_command_line(line)}), out);
 }
 
 }  // namespace
