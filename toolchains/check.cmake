@@ -1,20 +1,37 @@
 # Builds every configuration one after the other, each in its own tree, and lists the tests of all of them for one ctest.
 
 enable_testing()
+include(${CMAKE_CURRENT_LIST_DIR}/board.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/presets.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/python.cmake)
 
-set(compared host host-clang host-sanitize host-gcc-O0 host-gcc-native)
-set(cross
-  cortex-m0plus cortex-m3 cortex-m4f cortex-m7 cortex-m33 cortex-m55 cortex-m4f-clang cortex-m7-clang rv32)
-set(configurations ${compared} fuzz ${cross})
+# The compared ones are those that have the program `emax`.
+emax_list_configurations(configurations)
+set(compared "")
+set(cross "")
+foreach(configuration IN LISTS configurations)
+  emax_read_preset(${configuration} toolchain toolchainFile)
+  emax_read_preset(${configuration} is_fuzz cacheVariables EMAX_FUZZ)
+  if(toolchain)
+    list(APPEND cross ${configuration})
+  elseif(NOT is_fuzz)
+    list(APPEND compared ${configuration})
+  endif()
+endforeach()
+
+list(LENGTH configurations count)
+message(NOTICE
+  "emax: builds ${count} configurations and runs their tests: about 20 minutes on two idle cores, 1 GB in build/.")
 
 set(subtrees "")
 set(programs "")
+set(number 0)
 foreach(configuration IN LISTS configurations)
   set(tree ${PROJECT_SOURCE_DIR}/build/${configuration})
+  math(EXPR number "${number} + 1")
   add_custom_target(${configuration} ALL
-    COMMAND ${CMAKE_COMMAND} --preset ${configuration} --log-level=NOTICE
-    COMMAND ${CMAKE_COMMAND} --build --preset ${configuration} -- --quiet
+    COMMAND ${EMAX_PYTHON} -B ${CMAKE_CURRENT_LIST_DIR}/build_configuration.py
+      "configuration ${number} of ${count}" ${configuration} ${CMAKE_COMMAND}
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Configuration ${configuration}"
     USES_TERMINAL)
@@ -25,7 +42,7 @@ foreach(configuration IN LISTS configurations)
   string(APPEND subtrees "subdirs(\"${tree}\")\n")
 endforeach()
 foreach(configuration IN LISTS compared)
-  list(APPEND programs ${configuration}=${PROJECT_SOURCE_DIR}/build/${configuration}/emax)
+  list(APPEND programs ${configuration}='${PROJECT_SOURCE_DIR}/build/${configuration}/emax')
 endforeach()
 file(WRITE ${PROJECT_BINARY_DIR}/configurations.cmake "${subtrees}")
 set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${PROJECT_BINARY_DIR}/configurations.cmake)
@@ -35,39 +52,44 @@ set(comparison ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/host_tests/scenario/ident
 set(model_job report --model 1.037,4073,0.3182,0.003,6,0.0004 --trials 1000)
 set(points_job report --points ${PROJECT_SOURCE_DIR}/host_tests/data/djb_a1800v.csv --trials 1000)
 set(bench_job report --trials 1000)
+set(all_trials_job report --trials 200000)
 foreach(job IN ITEMS model points bench)
   add_test(NAME identical.${job}.text COMMAND ${comparison} ${${job}_job})
   add_test(NAME identical.${job}.json COMMAND ${comparison} ${${job}_job} --json)
 endforeach()
 
-# Only this build could use the fused multiply-add of the processor at hand.
-set(native ${PROJECT_SOURCE_DIR}/build/host-gcc-native)
-add_test(NAME host-gcc-native.gates.contraction
-  COMMAND ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/toolchains/gates/contraction.py --objdump ${CMAKE_OBJDUMP}
-    ${native}/algo/libemax_base.a ${native}/algo/libemax_algo.a ${native}/hal/libemax_hal.a
-    ${native}/hal/sim/libemax_sim.a ${native}/firmware/app/libemax_app.a)
+# emax_add_contraction_test(<configuration>)
+function(emax_add_contraction_test configuration)
+  add_test(NAME ${configuration}.gates.contraction
+    COMMAND ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/toolchains/gates/contraction.py
+      --tree ${PROJECT_SOURCE_DIR}/build/${configuration}
+      algo/libemax_base.a algo/libemax_algo.a hal/libemax_hal.a hal/sim/libemax_sim.a firmware/app/libemax_app.a)
+endfunction()
 
-find_program(EMAX_CLANG_FORMAT clang-format REQUIRED)
+# Of the PC's builds, only this one could use the fused multiply-add of the processor at hand.
+emax_add_contraction_test(host-gcc-native)
+foreach(configuration IN LISTS cross)
+  emax_add_contraction_test(${configuration})
+endforeach()
+
 find_program(EMAX_CLANG_TIDY clang-tidy REQUIRED)
-set(areas algo hal firmware host_tests)
-list(TRANSFORM areas PREPEND ${PROJECT_SOURCE_DIR}/)
-list(TRANSFORM areas APPEND /*.hpp OUTPUT_VARIABLE header_patterns)
-list(TRANSFORM areas APPEND /*.cpp OUTPUT_VARIABLE source_patterns)
-file(GLOB_RECURSE formatted ${header_patterns} ${source_patterns})
-add_test(NAME style.format COMMAND ${EMAX_CLANG_FORMAT} --dry-run --Werror ${formatted})
-add_custom_target(format COMMAND ${EMAX_CLANG_FORMAT} -i ${formatted} COMMENT "Formats all sources in place")
-
 file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
   algo/src/*/*.cpp hal/src/*.cpp hal/sim/src/*.cpp
   firmware/app/src/*/*.cpp firmware/desk/*/*.cpp firmware/boards/host/*.cpp)
-foreach(source IN LISTS tidied)
+# Of the sources of boards, those that the PC's tests build too.
+file(GLOB common RELATIVE ${PROJECT_SOURCE_DIR} host_tests/boards/test_*.cpp)
+list(TRANSFORM common REPLACE "host_tests/boards/test_(.*)" "firmware/boards/common/src/\\1")
+foreach(source IN LISTS tidied common)
   add_test(NAME style.tidy.${source}
     COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-clang ${PROJECT_SOURCE_DIR}/${source})
 endforeach()
 
 get_property(tests DIRECTORY PROPERTY TESTS)
-set_tests_properties(${tests} PROPERTIES TIMEOUT 240)
+set_tests_properties(${tests} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT})
 
-include(${CMAKE_CURRENT_LIST_DIR}/check_firmware.cmake)
-include(${CMAKE_CURRENT_LIST_DIR}/check_targets.cmake)
-include(${CMAKE_CURRENT_LIST_DIR}/check_clients.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/check_boards.cmake)
+
+# Once the tests have run: whether a test came too near to its time limit.
+add_custom_target(time_limits
+  COMMAND ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/toolchains/time_limits.py ${CMAKE_CTEST_COMMAND} ${PROJECT_BINARY_DIR}
+  USES_TERMINAL VERBATIM)

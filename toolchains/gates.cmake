@@ -16,8 +16,8 @@ function(emax_add_gate name script)
 endfunction()
 
 # emax_gate_image(<image> [RUN])
-# Symbols, contraction, flash and RAM of an image, and with gcc its stack; with RUN that is measured in the emulator,
-# too. Call it in the folder that the image is made in.
+# Symbols, contraction, flash and RAM of an image, and with gcc its stack; with RUN that is measured, too, if the board
+# has a runner. Call it in the folder that the image is made in.
 function(emax_gate_image image)
   cmake_parse_arguments(PARSE_ARGV 1 arg "RUN" "" "")
   if(NOT EMAX_TESTS)
@@ -51,10 +51,9 @@ function(emax_gate_stack image run)
     set_property(GLOBAL PROPERTY EMAX_WRITES_IMAGES TRUE)
     cmake_language(DEFER DIRECTORY ${PROJECT_SOURCE_DIR} CALL emax_write_images)
   endif()
-  if(run)
+  if(run AND EMAX_BOARD_RUNNER)
     emax_add_gate(${image}.stack_measured stack_measured.py
       --calls ${EMAX_INDIRECT_CALLS} --tree ${PROJECT_BINARY_DIR} ${image})
-    set_tests_properties(${EMAX_CONFIGURATION}.gates.${image}.stack_measured PROPERTIES TIMEOUT 300)
   endif()
 endfunction()
 
@@ -76,20 +75,28 @@ function(emax_collect_callgraphs target result)
   set(${result} ${folders} PARENT_SCOPE)
 endfunction()
 
+# emax_to_json(<variable>...): makes each list the inside of an array of strings, in the caller's scope.
+function(emax_to_json)
+  foreach(variable IN LISTS ARGN)
+    list(TRANSFORM ${variable} REPLACE "(.+)" "\"\\1\"")
+    list(JOIN ${variable} ", " text)
+    set(${variable} "${text}" PARENT_SCOPE)
+  endforeach()
+endfunction()
+
 # Writes images.json: how the images of this tree are run and read.
 function(emax_write_images)
   get_property(images GLOBAL PROPERTY EMAX_GATED_IMAGES)
   list(JOIN images "," images)
-  list(JOIN EMAX_MACHINE "\", \"" machine)
-  # So that an instruction takes 64 ns of the emulator's time, and on RISC-V 1 ns.
-  set(shift 6)
-  if(CMAKE_SYSTEM_PROCESSOR STREQUAL "rv32")
-    set(shift 0)
-  endif()
+  emax_to_json(EMAX_BOARD_RUNNER EMAX_BOARD_TABLE_LEFT_OUT)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/images.json CONTENT [[{
-  "name": "@EMAX_BOARD@",
-  "machine": ["@machine@"],
-  "counting": ["-icount", "shift=@shift@"],
+  "name": "@EMAX_BOARD_NAME@",
+  "core": "@EMAX_BOARD_CORE@",
+  "core_title": "@EMAX_BOARD_CORE_TITLE@",
+  "clock_mhz": "@EMAX_BOARD_TABLE_CLOCK_MHZ@",
+  "left_out": [@EMAX_BOARD_TABLE_LEFT_OUT@],
+  "runner": [@EMAX_BOARD_RUNNER@],
+  "instruction_ns": "@EMAX_BOARD_INSTRUCTION_NS@",
   "objdump": "@CMAKE_OBJDUMP@",
   "images": {@images@
   }

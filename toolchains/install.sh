@@ -6,9 +6,9 @@ usage() {
   cat <<'TEXT'
 usage: toolchains/install.sh [host | target]
 
-  host     what builds and runs the program on this PC
-  target   that, and what builds the firmware and runs it in an emulator
-  none     that, and everything the tests of all configurations need
+  host     what builds and runs the program on this PC: 0.1 GB to download, 0.4 GB installed
+  target   that, and what builds the firmware and runs it in an emulator: 0.8 GB, 4.5 GB installed
+  none     that, and everything the tests of all configurations need: 1 GB, 5.5 GB installed
 
 Installs only what is missing; with nothing missing it needs neither root nor a network.
 TEXT
@@ -74,6 +74,10 @@ step() {
 
 export DEBIAN_FRONTEND=noninteractive
 step apt-get update
+# How much there is to download, and how much room it takes.
+# shellcheck disable=SC2086
+LC_ALL=C apt-get install --no-install-recommends --assume-no $missing 2>/dev/null |
+  sed -n 's/^\(Need to get\|After this operation\)/install.sh: &/p' || true
 # shellcheck disable=SC2086
 step apt-get install --yes --no-install-recommends $missing
 echo "install.sh: done"

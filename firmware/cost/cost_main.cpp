@@ -24,7 +24,7 @@ constexpr int kBadInput = 2;
 constexpr int kFailed = 3;
 
 void wait_for_console() noexcept {
-  while (!board::board().console().sent()) {
+  while (!board::console_sent()) {
   }
 }
 
@@ -54,6 +54,7 @@ const Part* find(Span<const char> name) noexcept {
 
 int count_all(board::Words arguments, app::TextWriter& out) noexcept {
   Rows rows(out);
+  (void)arguments.next();  // The emulator puts the path of the image in front.
   while (!arguments.done()) {
     const Part* part = find(arguments.next());
     if (part == nullptr) {
@@ -70,8 +71,8 @@ int count_all(board::Words arguments, app::TextWriter& out) noexcept {
 }
 
 int run() noexcept {
-  const Status status = board::board().start();
-  board::ConsoleSink sink(board::board().console());
+  const Status status = board::start_board();
+  board::ConsoleSink sink(board::ports().console);
   app::TextWriter out(sink);
   if (status != Status::kOk) {
     out.text(explain(status)).line();

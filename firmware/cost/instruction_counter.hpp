@@ -11,12 +11,11 @@ using Ticks = std::uint64_t;
 /// Switches the counter on. Once, first of all.
 void start_counter() noexcept;
 
-/// Exact only in an emulator that counts instructions: `-icount shift=6` for the boards MPS2, any
-/// for RISC-V.
+/// Exact only in an emulator that counts instructions.
 Ticks now() noexcept;
 
-/// @returns The units from one moment to a later one. On the boards MPS2 less than 2^32 of them,
-/// which are 2.6e9 instructions.
+/// @returns The units from one moment to a later one. A counter of 32 bits starts over: there, less
+/// than 2^32 of them.
 Ticks passed(Ticks from, Ticks to) noexcept;
 
 /// @returns The instructions of so many units, to the nearest.

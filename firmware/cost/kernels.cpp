@@ -41,7 +41,7 @@ double sine_at(std::size_t sample) noexcept {
 
 /// As a sweep does it, of both channels.
 Status count_frame_sine_fit(FrameSineFit& fit, Rows& rows) noexcept {
-  const hal::StreamFormat format = board::board().stream().format();
+  const hal::StreamFormat format = board::ports().analog.format();
   const Status status = fit.start(kFrequency_hz, format.sample_rate_hz,
                                   hal::volts_per_word(format.input_full_scale_v));
   Ticks ticks = 0;
@@ -60,7 +60,7 @@ Status count_frame_sine_fit(FrameSineFit& fit, Rows& rows) noexcept {
 }
 
 Status count_bench_frame(Rows& rows) noexcept {
-  hal::AnalogStream& stream = board::board().stream();
+  hal::AnalogStream& stream = board::ports().analog;
   Status status = stream.start({1'000'000'000, 100'000'000});
   std::array<hal::Word, kBlock> drive = {};
   std::array<hal::Frame, kBlock> response = {};

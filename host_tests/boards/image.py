@@ -1,4 +1,4 @@
-"""A test image in its emulator: the console as two pipes, and the exit status."""
+"""A test image that runs: its console as two pipes, and its exit status."""
 
 import subprocess
 import threading
@@ -8,13 +8,11 @@ LONGEST_RUN_S = 50
 
 
 class Image:
-    """The emulator's command line ends with what comes right before the path of the image."""
+    """RUNNER OPTION... PATH ARGUMENT, as board.cmake declares it."""
 
-    def __init__(self, emulator: list[str], path: str, arguments: str = "", options: list[str] | None = None):
-        machine, last = emulator[:-1], emulator[-1]
-        command = [*machine, *(options or []), *(["-append", arguments] if arguments else []), last, path]
+    def __init__(self, runner: list[str], path: str, argument: str, options: list[str] | None = None):
         self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0
+            [*runner, *(options or []), path, argument], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0
         )
         self.timer = threading.Timer(LONGEST_RUN_S, self.process.kill)
         self.timer.start()

@@ -1,6 +1,6 @@
 """Demands of the image `fault` that each fault is reported with the drive at zero, and ends in its exit status.
 
-usage: test_fault.py IMAGE NM EMULATOR...
+usage: test_fault.py IMAGE NM RUNNER...
 """
 
 import re
@@ -17,11 +17,11 @@ FAULT_STATUS = 70
 class FaultTest(unittest.TestCase):
     image_path = ""
     nm = ""
-    emulator: list[str] = []
+    runner: list[str] = []
 
     def report_of(self, kind: str) -> tuple[str, dict[str, int]]:
         """The name of the fault and its numbers."""
-        with Image(self.emulator, self.image_path, kind) as image:
+        with Image(self.runner, self.image_path, kind) as image:
             status, text = image.end()
         self.assertEqual(status, FAULT_STATUS, text)
         match = re.fullmatch(r"\nfault: ([\w ]+), drive at zero,((?: \w+=0x[0-9a-f]{8})+)\n", text)
@@ -60,10 +60,10 @@ class FaultTest(unittest.TestCase):
         self.assertEqual(name, "stack overflow")
 
     def test_no_fault(self):
-        with Image(self.emulator, self.image_path, "nothing") as image:
+        with Image(self.runner, self.image_path, "nothing") as image:
             self.assertEqual(image.end(), (2, ""))
 
 
 if __name__ == "__main__":
-    FaultTest.image_path, FaultTest.nm, *FaultTest.emulator = sys.argv[1:]
+    FaultTest.image_path, FaultTest.nm, *FaultTest.runner = sys.argv[1:]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,4 +1,4 @@
-"""The instruments that the client tests talk to: the program on a loopback port, or an image in QEMU.
+"""The instruments that the client tests talk to: the program on a loopback port, or an image that runs on this PC.
 
 Both are started here, in a directory of their own, and are spoken to over TCP.
 """
@@ -19,7 +19,7 @@ def restore_signals() -> None:
 
 
 def wait_for(port: int) -> None:
-    """Until somebody listens; QEMU says nothing when it does. Does not connect: QEMU would take it for the client."""
+    """Until somebody listens; an emulator says nothing when it does. Does not connect: it would take that for the client."""
     deadline = time.monotonic() + START_S
     wanted = f":{port:04X} "
     while time.monotonic() < deadline:
@@ -48,15 +48,14 @@ class HostProgram:
         self.process.stderr.close()
 
 
-class QemuImage:
+class BoardImage:
     """An image whose console is a socket; the emulated core waits until a client is there."""
 
-    def __init__(self, command: list[str], image: str):
+    def __init__(self, runner: list[str], image: str):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             self.port = free.getsockname()[1]
-        console = f"tcp:127.0.0.1:{self.port},server=on,wait=on,nodelay=on"
-        self.process = subprocess.Popen([*command, "-serial", console, "-kernel", image], stdin=subprocess.DEVNULL,
+        self.process = subprocess.Popen([*runner, "--console", f"tcp:{self.port}", image], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         wait_for(self.port)
 

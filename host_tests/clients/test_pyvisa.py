@@ -1,7 +1,7 @@
 """PyVISA takes the instrument through the whole job, as a lab's script would.
 
 usage: test_pyvisa.py PROGRAM [unittest arguments]                              the program itself, by TCP
-       test_pyvisa.py PROGRAM IMAGE QEMU [QEMU options] -- [unittest arguments]   an image in QEMU
+       test_pyvisa.py PROGRAM IMAGE RUNNER... -- [unittest arguments]   an image of a board, and what runs it
 
 PROGRAM is always the one for this PC: its report is what every instrument must give.
 """
@@ -15,7 +15,7 @@ import warnings
 
 import pyvisa
 
-from instruments import HostProgram, QemuImage
+from instruments import BoardImage, HostProgram
 
 MODEL = "1.037,4073,0.3182,0.003,6,0.0004"
 # For software double in an emulator; on the program none of it takes a second.
@@ -31,7 +31,7 @@ class ClientTest(unittest.TestCase):
     """Each test meets an instrument that has just been switched on."""
 
     def setUp(self):
-        instrument = QemuImage(IMAGE[1:], IMAGE[0]) if IMAGE else HostProgram(PROGRAM)
+        instrument = BoardImage(IMAGE[1:], IMAGE[0]) if IMAGE else HostProgram(PROGRAM)
         self.addCleanup(instrument.close)
         manager = pyvisa.ResourceManager("@py")
         self.addCleanup(manager.close)

@@ -1,11 +1,11 @@
 # Proof that the gates on images refuse bad ones: each is a good image with one fault.
 
-if(NOT TARGET emax_board)
+if(NOT TARGET emax_board_test)
   return()
 endif()
 
-set(sections ${PROJECT_SOURCE_DIR}/firmware/boards/common/sections.ld)
-set(memory ${PROJECT_SOURCE_DIR}/firmware/boards/${EMAX_BOARD}/memory.ld)
+set(sections ${EMAX_BOARD_COMMON}/sections.ld)
+set(memory ${EMAX_BOARD_FOLDER}/memory.ld)
 set(images "")
 set(CMAKE_CXX_STANDARD_LIBRARIES "-lc -lgcc")
 
@@ -17,7 +17,7 @@ foreach(image IN ITEMS good_image bad_array bad_depth bad_pointer bad_recursion 
   if(image STREQUAL "bad_semihosting")
     target_link_libraries(${image} PRIVATE emax_board_test)
   else()
-    target_sources(${image} PRIVATE ${PROJECT_SOURCE_DIR}/firmware/boards/common/src/stop_and_wait.cpp)
+    target_sources(${image} PRIVATE ${EMAX_BOARD_COMMON}/src/stop_and_wait.cpp)
   endif()
   list(APPEND images $<TARGET_FILE:${image}>)
 endforeach()

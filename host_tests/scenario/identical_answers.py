@@ -1,6 +1,6 @@
 """Sends the same commands to the console of a board's product and to `emax scpi`, and demands the same answers.
 
-usage: identical_answers.py PROGRAM "qemu-system-arm -M mps2-an500 ... -kernel IMAGE"
+usage: identical_answers.py PROGRAM "RUNNER... IMAGE"
 
 Only *IDN? names the board.
 """
@@ -32,13 +32,13 @@ SYST:ERR?
 """
 
 # A product never ends by itself.
-LONGEST_RUN_S = 500
+LONGEST_RUN_S = 1100
 
 
 def main() -> int:
-    program, emulator = sys.argv[1:]
+    program, board_command = sys.argv[1:]
     expected = answers_of([program, "scpi"])
-    got = answers_of(shlex.split(emulator))
+    got = answers_of(shlex.split(board_command))
     queries = [line for line in COMMANDS.splitlines() if "?" in line]
     if len(expected) != len(queries):
         sys.exit(f"{program} gave {len(expected)} answers to {len(queries)} queries")

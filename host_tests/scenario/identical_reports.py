@@ -2,8 +2,8 @@
 
 usage: identical_reports.py NAME=PROGRAM... -- ARGUMENT...
 
-The first program is the reference and runs twice. A PROGRAM "qemu-system-arm -M mps2-an500 ... -kernel IMAGE" is
-an image in its emulator, which gets the same arguments.
+The first program is the reference and runs twice. A PROGRAM "RUNNER... IMAGE" is an image and what runs it, which get
+the same arguments.
 """
 
 import shlex
@@ -37,18 +37,11 @@ def main() -> int:
 
 
 def run(name: str, program: str, arguments: list[str]) -> bytes:
-    result = subprocess.run(command_of(program, arguments), capture_output=True, check=False)
+    result = subprocess.run([*shlex.split(program), *arguments], capture_output=True, check=False)
     if result.returncode != 0:
         message = result.stderr.decode(errors="replace")
         sys.exit(f"{name}: exit status {result.returncode} from {' '.join(arguments)}\n{message}")
     return result.stdout
-
-
-def command_of(program: str, arguments: list[str]) -> list[str]:
-    if " -kernel " not in program:
-        return [program, *arguments]
-    words = shlex.split(program)
-    return [*words[:-2], "-append", " ".join(arguments), *words[-2:]]
 
 
 def first_difference(expected: bytes, got: bytes) -> tuple[int, str, str]:

@@ -28,15 +28,11 @@ emax_leave_out(test_sim_noise
   SimNoise.DensityIsNormal
   SimNoise.IsWhite)
 
-# Slow ones, measured; the limit keeps all the others together at a minute and a half, or one.
-set(EMAX_SLOW_TEST_S 1.3)
-if(EMAX_BOARD STREQUAL "mps2_an386")
-  set(EMAX_SLOW_TEST_S 1.5)
-endif()
+# Slow ones, measured; the board's limit keeps all the others together at a minute or so.
 get_property(left_out GLOBAL PROPERTY EMAX_LEFT_OUT_TESTS)
 list(JOIN left_out "\n" left_out)
 file(WRITE ${PROJECT_BINARY_DIR}/left_out.txt "${left_out}\n")
-set(EMAX_SLOW_TESTS ${CMAKE_CURRENT_LIST_DIR}/slow_tests.${EMAX_BOARD}.txt)
+set(EMAX_SLOW_TESTS ${EMAX_BOARD_FOLDER}/slow_tests.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${EMAX_SLOW_TESTS})
 file(STRINGS ${EMAX_SLOW_TESTS} lines REGEX "^test_")
 foreach(line IN LISTS lines)

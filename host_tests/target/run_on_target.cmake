@@ -30,7 +30,7 @@ const char* const emax_tests_left_out = "@left_out@";
   endif()
 
   # Its console is semihosting, and a terminal is not touched.
-  set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${EMAX_MACHINE};-serial;null;-kernel")
+  set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${EMAX_BOARD_RUNNER};--console;null")
   add_test(NAME ${EMAX_CONFIGURATION}.${name} COMMAND ${name} ${ARGN})
   set_tests_properties(${EMAX_CONFIGURATION}.${name} PROPERTIES
     TIMEOUT ${EMAX_TEST_TIMEOUT} LABELS ${EMAX_CONFIGURATION})
@@ -43,9 +43,9 @@ function(emax_add_slow_tests_target)
   list(TRANSFORM images REPLACE "(.+)" "$<TARGET_FILE:\\1>")
   add_custom_target(slow_tests
     COMMAND ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/host_tests/target/slow_tests.py
-      ${EMAX_SLOW_TESTS} ${EMAX_SLOW_TEST_S} ${PROJECT_BINARY_DIR}/left_out.txt
-      ${EMAX_MACHINE} -serial null -kernel -- ${images}
-    COMMENT "Measures the tests in QEMU"
+      ${EMAX_SLOW_TESTS} ${EMAX_BOARD_SLOW_TEST_S} ${PROJECT_BINARY_DIR}/left_out.txt
+      ${EMAX_BOARD_RUNNER} --console null -- ${images}
+    COMMENT "Measures the tests on the emulated core"
     USES_TERMINAL VERBATIM)
   add_dependencies(slow_tests ${ARGN})
 endfunction()

@@ -1,9 +1,9 @@
-"""Measures the tests of GoogleTest images in QEMU and writes the list of those that take long.
+"""Measures the tests of GoogleTest images on the emulated core and writes the list of those that take long.
 
-usage: slow_tests.py LIST SECONDS LEFT_OUT EMULATOR... -- IMAGE...
+usage: slow_tests.py LIST SECONDS LEFT_OUT RUNNER... -- IMAGE...
 
 LEFT_OUT is a file with the names of the tests that do not run for other reasons, one a line. A
-time is what QEMU takes of a processor of this PC, so it matters little what else runs. A test that
+time is what the emulator takes of a processor of this PC, so it matters little what else runs. A test that
 takes twice SECONDS is ended. What LIST says of other images stays.
 """
 
@@ -23,7 +23,7 @@ END = re.compile(r"\[(?:       OK|  FAILED|  SKIPPED) \] (\S+?),? .*\(\d+ ms\)")
 def main() -> int:
     list_file, limit_s, left_out_file = Path(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3])
     split = sys.argv.index("--")
-    emulator, images = sys.argv[4:split], sys.argv[split + 1 :]
+    runner, images = sys.argv[4:split], sys.argv[split + 1 :]
     left_out = set(left_out_file.read_text().split())
 
     measured = {Path(image).name for image in images}
@@ -31,7 +31,7 @@ def main() -> int:
     lines = [line for line in old if line.split()[0] not in measured]
     total_s = 0.0
     for image in images:
-        seconds = measure(emulator, image, left_out, 2 * limit_s)
+        seconds = measure(runner, image, left_out, 2 * limit_s)
         slow = {test: s for test, s in seconds.items() if s > limit_s}
         kept_s = sum(seconds.values()) - sum(slow.values())
         total_s += kept_s
@@ -49,21 +49,21 @@ def main() -> int:
     return 0
 
 
-def measure(emulator: list[str], image: str, left_out: set[str], longest_s: float) -> dict[str, float]:
+def measure(runner: list[str], image: str, left_out: set[str], longest_s: float) -> dict[str, float]:
     """The seconds of each test; the image starts anew behind each that had to be ended."""
     seconds: dict[str, float] = {}
-    remaining = [test for test in names(emulator, image) if test not in left_out]
+    remaining = [test for test in names(runner, image) if test not in left_out]
     while remaining:
-        seconds.update(run(emulator, image, remaining, longest_s))
+        seconds.update(run(runner, image, remaining, longest_s))
         if not seconds.keys() & set(remaining):
             sys.exit(f"{image}: no test ran of {remaining}")
         remaining = [test for test in remaining if test not in seconds]
     return seconds
 
 
-def names(emulator: list[str], image: str) -> list[str]:
+def names(runner: list[str], image: str) -> list[str]:
     listing = subprocess.run(
-        [*emulator, image, "-append", "--gtest_list_tests --gtest_filter=*"],
+        [*runner, image, "--gtest_list_tests", "--gtest_filter=*"],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -80,12 +80,12 @@ def names(emulator: list[str], image: str) -> list[str]:
     return found
 
 
-def run(emulator: list[str], image: str, tests: list[str], longest_s: float) -> dict[str, float]:
+def run(runner: list[str], image: str, tests: list[str], longest_s: float) -> dict[str, float]:
     with tempfile.NamedTemporaryFile("w", suffix=".flags") as flags:
         flags.write(f"--gtest_filter={':'.join(tests)}\n")
         flags.flush()
         process = subprocess.Popen(
-            [*emulator, image, "-append", f"--gtest_flagfile={flags.name}"],
+            [*runner, image, f"--gtest_flagfile={flags.name}"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             text=True,

@@ -1,14 +1,17 @@
 """Checks that objects and archives contain no fused multiply-add, which rounds once where the source rounds twice.
 
-usage: contraction.py --objdump OBJDUMP FILE...
+usage: contraction.py (--objdump OBJDUMP | --tree TREE) FILE...
 
-Prints one line for each function that has such an instruction (x86, Arm, RISC-V) and exits with 1 if there is one.
+With --tree the files are in a build tree, which knows its objdump. Prints one line for each function that has such an instruction (x86, Arm, RISC-V) and exits with 1 if there is one.
 """
 
 import argparse
 import re
 import subprocess
 import sys
+from pathlib import Path
+
+import disassembly
 
 FUNCTION = re.compile(r"[0-9a-f]+ <(.*)>:")
 INSTRUCTION = re.compile(r"\s*[0-9a-f]+:\s+([a-z][\w.]*)")
@@ -20,15 +23,21 @@ FUSED = re.compile(
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--objdump", required=True)
+    tool = parser.add_mutually_exclusive_group(required=True)
+    tool.add_argument("--objdump")
+    tool.add_argument("--tree", type=Path)
     parser.add_argument("files", nargs="+", metavar="FILE")
     arguments = parser.parse_args()
+    objdump, files = arguments.objdump, arguments.files
+    if arguments.tree:
+        objdump = disassembly.objdump_of(arguments.tree)
+        files = [str(arguments.tree / file) for file in files]
 
     instructions = 0
     breaches: dict[str, str] = {}
-    for file in arguments.files:
+    for file in files:
         listing = subprocess.run(
-            [arguments.objdump, "--disassemble", "--no-show-raw-insn", file], capture_output=True, text=True, check=True
+            [objdump, "--disassemble", "--no-show-raw-insn", file], capture_output=True, text=True, check=True
         ).stdout
         function = ""
         for line in listing.splitlines():

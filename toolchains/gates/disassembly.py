@@ -2,6 +2,8 @@
 
 import re
 import subprocess
+import sys
+from pathlib import Path
 from typing import NamedTuple
 
 from image import Image
@@ -44,6 +46,12 @@ class Code(NamedTuple):
     address: int
     label: str
     instructions: list[Instruction]
+
+
+def objdump_of(tree: Path) -> str:
+    """The objdump of a build tree."""
+    match = re.search(r"^CMAKE_OBJDUMP:\w+=(.+)$", (tree / "CMakeCache.txt").read_text(), re.MULTILINE)
+    return match[1] if match else sys.exit(f"{tree} knows no objdump")
 
 
 def disassemble(objdump: str, image: Image) -> list[Code]:

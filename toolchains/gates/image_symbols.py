@@ -1,6 +1,6 @@
 """Checks that a linked image has nothing in it that a microcontroller should not carry.
 
-usage: image_symbols.py --objdump OBJDUMP [--semihosting] IMAGE
+usage: image_symbols.py (--objdump OBJDUMP | --tree TREE) [--semihosting] IMAGE
 
 Refused are the heap, exceptions, stdio, libm and the C library's state, guards of function-local statics, code that
 runs before main or after it, thread-local storage, and calls to a debugger (semihosting), which stop a processor that
@@ -10,8 +10,9 @@ there is one.
 
 import argparse
 import sys
+from pathlib import Path
 
-from disassembly import disassemble
+from disassembly import disassemble, objdump_of
 from image import Image
 from symbols import DEFINED, FAMILIES, SECTIONS, meaning
 
@@ -34,7 +35,9 @@ RISCV_SEMIHOSTING = ["slli zero,zero,0x1f", "ebreak", "srai zero,zero,0x7"]
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--objdump", required=True)
+    tool = parser.add_mutually_exclusive_group(required=True)
+    tool.add_argument("--objdump")
+    tool.add_argument("--tree", type=Path, help="a build tree, which knows its objdump")
     parser.add_argument("--semihosting", action="store_true")
     parser.add_argument("image")
     arguments = parser.parse_args()
@@ -45,7 +48,7 @@ def main() -> int:
         sys.exit(f"image_symbols: {image.path} has no symbols; nothing was checked")
     complaints = breaches(image, names)
     if not arguments.semihosting:
-        complaints += debugger_calls(image, arguments.objdump)
+        complaints += debugger_calls(image, arguments.objdump or objdump_of(arguments.tree))
     for complaint in complaints:
         print(f"{image.name}: {complaint}")
     print(f"{image.name}: {len(names)} symbols, {len(complaints)} breaches")

@@ -1,4 +1,4 @@
-"""Runs images of a board in its emulator."""
+"""Runs images of a board, by the program that its board.cmake declares for that."""
 
 import json
 import re
@@ -8,7 +8,7 @@ import threading
 from pathlib import Path
 from typing import NamedTuple
 
-TIMEOUT_S = 600
+TIMEOUT_S = 1100
 STACK_LINE = re.compile(r"stack: (\d+) of (\d+) bytes used")
 
 # Work that goes through every part: sweep, fit, search, bound, trials, trend, report.
@@ -32,8 +32,12 @@ COST = ["kernels", "energies-2", "sweep"]
 class Board(NamedTuple):
     name: str
     tree: str
-    machine: list[str]  # The emulator and its options, but not console and image.
-    counting: list[str]  # What makes its time a count of instructions.
+    core: str
+    core_title: str  # In the tables, with
+    clock_mhz: str  # the clock of a chip that has the core, and
+    left_out: list[str]  # what is not counted.
+    runner: list[str]  # Before an image and its arguments; empty if nothing runs it.
+    instruction_ns: str  # Of the machine's time, while the counter counts.
     objdump: str
     images: dict[str, list[str]]  # With the folders of their call graphs.
 
@@ -47,9 +51,8 @@ class Board(NamedTuple):
 
 def run_test_image(board: Board, image: str, arguments: list[str], counting: bool = False) -> tuple[str, int]:
     """What the image prints, and how much of its stack it has used."""
-    given = "".join(f",arg={a.replace(',', ',,')}" for a in arguments)
-    machine = [f"{option}{given}" if option.startswith("enable=on") else option for option in board.machine]
-    command = [*machine, *(board.counting if counting else []), "-serial", "stdio", "-kernel", board.path(image)]
+    options = ["--instruction-ns", board.instruction_ns] if counting else []
+    command = [*board.runner, *options, board.path(image), *arguments]
     done = subprocess.run(
         command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
     )
@@ -61,7 +64,7 @@ def run_test_image(board: Board, image: str, arguments: list[str], counting: boo
 
 def run_product(board: Board, image: str) -> int:
     """How much of its stack a product has used after a whole job."""
-    command = [*board.machine, "-serial", "stdio", "-kernel", board.path(image)]
+    command = [*board.runner, board.path(image)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as emulator:
         timer = threading.Timer(TIMEOUT_S, emulator.kill)
         timer.start()
@@ -89,8 +92,10 @@ def ask(emulator: "subprocess.Popen[bytes]", message: str) -> bytes:
     return emulator.stdout.read(int(emulator.stdout.read(digits))) + emulator.stdout.readline()
 
 
-def measured_stack(board: Board, image: str) -> int:
-    """How much of its stack the image has used after work that goes through every part of it."""
+def measured_stack(board: Board, image: str) -> "int | None":
+    """How much of its stack the image has used after work that goes through every part of it; None if nothing runs it."""
+    if not board.runner:
+        return None
     if image == f"emax_{board.name}":
         return run_product(board, image)
     arguments = REPORT if image.endswith("_report") else COST

@@ -6,7 +6,6 @@
 #include "emax/board/board.hpp"
 #include "emax/board/stack_mark.hpp"
 #include "emax/board/startup.hpp"
-#include "emax/sim/sim_bench.hpp"
 
 namespace emax::board {
 namespace {
@@ -19,21 +18,11 @@ app::MemoryUse memory_use() noexcept {
 }
 
 [[noreturn]] void run() noexcept {
-  static app::InPlace<app::SimulatedBench> bench_memory;
   static app::InPlace<app::Instrument> instrument_memory;
-  Board& hardware = board();
-  (void)hardware.start();  // A bench that is not there answers so to whoever starts a sweep.
-  const sim::Device& device = hardware.stream().settings().device;
-  const app::SimulatedBench& simulated = bench_memory.make(
-      app::SimulatedBench{hardware.stream().settings().seed,
-                          {device.sensitivity, device.natural_frequency_hz, device.damping}});
-  const app::Ports ports = {hardware.stream(), hardware.console(), hardware.clock(),
-                            &hardware.watchdog(), &hardware.store()};
-  app::Board about;
-  about.name = EMAX_BOARD_NAME;
-  about.simulated = &simulated;
-  about.memory_use = memory_use;
-  app::Instrument& instrument = instrument_memory.make(ports, about);
+  (void)start_board();  // A bench that is not there answers so to whoever starts a sweep.
+  app::Board board = about();
+  board.memory_use = memory_use;
+  app::Instrument& instrument = instrument_memory.make(ports(), board);
   instrument.start();
   for (;;) {
     instrument.poll();

@@ -77,20 +77,21 @@ void keep_time(std::uint32_t turns, hal::Clock& clock, app::TextWriter& out) noe
 
 bool holds_record() noexcept {
   std::array<std::uint8_t, kRecord.size()> found = {};
-  return board().store().read(kSlot, found) == Status::kOk && found == kRecord;
+  return ports().store->read(kSlot, found) == Status::kOk && found == kRecord;
 }
 
 /// Kicks for three periods, then hangs: this comes back in a new run if there is a watchdog.
 int bite(app::TextWriter& out) noexcept {
-  hal::Watchdog& watchdog = board().watchdog();
+  hal::Watchdog& watchdog = *ports().watchdog;
   if (watchdog.start() != Status::kOk) {
     out.text("no watchdog; reset\n");
-    while (!board().console().sent()) {
+    while (!console_sent()) {
     }
     reset();
   }
-  const std::uint64_t end_us = board().clock().now_us() + 3 * std::uint64_t{watchdog.period_us()};
-  while (board().clock().now_us() < end_us) {
+  hal::Clock& clock = ports().clock;
+  const std::uint64_t end_us = clock.now_us() + 3 * std::uint64_t{watchdog.period_us()};
+  while (clock.now_us() < end_us) {
     watchdog.kick();
     spin(1000);
   }
@@ -102,22 +103,23 @@ int bite(app::TextWriter& out) noexcept {
 
 /// The second part, in two runs of the program.
 int pass_time(app::TextWriter& out) noexcept {
-  out.text(board().watchdog().caused_reset() ? "watchdog reset" : "other reset");
+  out.text(ports().watchdog->caused_reset() ? "watchdog reset" : "other reset");
   if (holds_record()) {
     out.text(", record kept\n");
     return 0;
   }
   out.line();
-  keep_time(kShortTurns, board().clock(), out);
-  keep_time(kLongTurns, board().clock(), out);
-  return board().store().write(kSlot, kRecord) == Status::kOk ? bite(out) : kFailed;
+  keep_time(kShortTurns, ports().clock, out);
+  keep_time(kLongTurns, ports().clock, out);
+  return ports().store->write(kSlot, kRecord) == Status::kOk ? bite(out) : kFailed;
 }
 
 int run() noexcept {
-  if (board().start() != Status::kOk) {
+  if (start_board() != Status::kOk) {
     return kFailed;
   }
-  ConsoleSink sink(board().console());
+  hal::ByteStream& console = ports().console;
+  ConsoleSink sink(console);
   app::TextWriter out(sink);
   std::array<char, kCommandLineRoom> line = {};
   Words words({line.data(), read_command_line(line)});
@@ -128,8 +130,8 @@ int run() noexcept {
   if (!is(part, "console")) {
     return kBadInput;
   }
-  echo(board().console(), sink);
-  overflow(board().console(), sink);
+  echo(console, sink);
+  overflow(console, sink);
   return 0;
 }
 

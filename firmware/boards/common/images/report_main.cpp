@@ -16,6 +16,7 @@
 #include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/semihosting.hpp"
+#include "emax/hal/analog_stream.hpp"
 #include "emax/identify/frequency_response.hpp"
 
 #include "command_line.hpp"
@@ -106,12 +107,12 @@ bool read_job(Span<const char> command_line, Job& job) noexcept {
 class Work {
  public:
   /// Runs the job on this bench.
-  Status run(const Job& job, sim::SimBench& bench) noexcept {
+  Status run(const Job& job, hal::AnalogStream& bench) noexcept {
     const Status status = job.measures ? measure(bench) : Status::kOk;
     return status == Status::kOk ? evaluate(job) : status;
   }
 
-  void print(const Job& job, const sim::SimBench& bench, app::TextWriter& out) const noexcept;
+  void print(const Job& job, app::TextWriter& out) const noexcept;
 
  private:
   union Workspace {
@@ -122,7 +123,7 @@ class Work {
     app::EvaluationWorkspace evaluation;
   };
 
-  Status measure(sim::SimBench& bench) noexcept;
+  Status measure(hal::AnalogStream& bench) noexcept;
   Status evaluate(const Job& job) noexcept;
 
   app::Sweep sweep_;
@@ -131,7 +132,7 @@ class Work {
   Workspace workspace_;
 };
 
-Status Work::measure(sim::SimBench& bench) noexcept {
+Status Work::measure(hal::AnalogStream& bench) noexcept {
   Status status = sweep_.start(app::SweepSettings(), bench, workspace_.sweep);
   if (status != Status::kOk) {
     return status;
@@ -154,16 +155,12 @@ Status Work::evaluate(const Job& job) noexcept {
   return evaluation_.status();
 }
 
-void Work::print(const Job& job, const sim::SimBench& bench, app::TextWriter& out) const noexcept {
+void Work::print(const Job& job, app::TextWriter& out) const noexcept {
   if (!job.measures) {
     write_report(evaluation_, app::ReportContext{}, out);
     return;
   }
-  const sim::BenchSettings& settings = bench.settings();
-  const app::SimulatedBench simulated = {
-      settings.seed,
-      {settings.device.sensitivity, settings.device.natural_frequency_hz, settings.device.damping}};
-  const app::Measurement measurement = {sweep_, bench.format(), &simulated};
+  const app::Measurement measurement = {sweep_, ports().analog.format(), about().simulated};
   app::ReportContext context;
   context.measurement = &measurement;
   write_report(evaluation_, context, out);
@@ -172,8 +169,8 @@ void Work::print(const Job& job, const sim::SimBench& bench, app::TextWriter& ou
 int run() noexcept {
   static app::InPlace<Job> job_memory;
   static app::InPlace<Work> work_memory;
-  Status status = board().start();
-  ConsoleSink sink(board().console());
+  Status status = start_board();
+  ConsoleSink sink(ports().console);
   app::TextWriter out(sink);
   Job& job = job_memory.make();
   std::array<char, kCommandLineRoom> line = {};
@@ -184,13 +181,13 @@ int run() noexcept {
   }
   Work& work = work_memory.make();
   if (status == Status::kOk) {
-    status = work.run(job, board().stream());
+    status = work.run(job, ports().analog);
   }
   if (status != Status::kOk) {
     out.text(explain(status)).line();
     return kFault;
   }
-  work.print(job, board().stream(), out);
+  work.print(job, out);
   return 0;
 }
 

@@ -17,10 +17,10 @@ constexpr int kFault = 3;
 
 int run() noexcept {
   static app::InPlace<app::SelfTestWorkspace> memory;
-  if (board().start() != Status::kOk) {
+  if (start_board() != Status::kOk) {
     return kFault;
   }
-  ConsoleSink sink(board().console());
+  ConsoleSink sink(ports().console);
   app::TextWriter out(sink);
   const app::SelfTestTables& tables = app::self_test_tables();
   const std::uint32_t failed = app::first_failed_check(tables, memory.make());

@@ -22,7 +22,7 @@ class EmulatorSink final : public app::TextSink {
 }  // namespace
 
 void finish(int status) noexcept {
-  while (!board().console().sent()) {
+  while (!console_sent()) {
   }
   const std::size_t used = used_stack_bytes(stack());
   EmulatorSink sink;

@@ -1,14 +1,35 @@
-// The machine's peripherals, and what its interrupts and faults lead to.
+// QEMU's machine `virt` with a 32-bit RISC-V core: its peripherals, and what its interrupts and
+// faults lead to.
 #include "emax/board/board.hpp"
 
+#include <cstdint>
+
 #include "emax/board/fault_report.hpp"
+#include "emax/board/machine_clock.hpp"
+#include "emax/board/ns16550.hpp"
+#include "emax/board/null_watchdog.hpp"
+#include "emax/board/ram_store.hpp"
 #include "emax/board/registers.hpp"
 #include "emax/board/riscv.hpp"
+#include "emax/board/simulated_bench.hpp"
 #include "emax/board/startup.hpp"
 #include "emax/board/store_format.hpp"
+#include "emax/sim/sim_bench.hpp"
 
 namespace emax::board {
 namespace {
+
+constexpr std::uint32_t kMtime_hz = EMAX_BOARD_CLOCK_HZ;
+constexpr std::uint32_t kUartClock_hz = 3'686'400;
+constexpr std::uint32_t kBaud = 115200;
+
+constexpr std::uintptr_t kMtime = 0x0200BFF8;
+constexpr std::uintptr_t kUart0 = 0x10000000;
+constexpr unsigned kUart0Interrupt = 10;
+static_assert(kUart0Interrupt < EMAX_BOARD_INTERRUPTS);
+
+static_assert(kMtime_hz % 1'000'000 == 0);
+static_assert(kUartClock_hz % (16 * kBaud) == 0);
 
 // The interrupt controller, for machine mode of the first core.
 constexpr std::uintptr_t kPlicPriority = 0x0C000000;
@@ -21,28 +42,39 @@ constexpr std::uint32_t kTestReset = 0x7777;
 
 [[gnu::section(".store")]] std::uint8_t records[kStoreFormat.slot_count * kStoreFormat.slot_bytes];
 
+struct Hardware {
+  Ns16550 console{kUart0};
+  MachineClock clock{kMtime, kMtime_hz / 1'000'000};
+  NullWatchdog watchdog;
+  RamStore store{kStoreFormat, records};
+  sim::SimBench stream;
+};
+
+Hardware hardware;
+constexpr app::Ports kPorts = {hardware.stream, hardware.console, hardware.clock,
+                               &hardware.watchdog, &hardware.store};
+
+constexpr sim::BenchSettings kBench = {};
+constexpr app::SimulatedBench kSimulated = describe(kBench);
+constexpr app::Board kAbout = {EMAX_BOARD_NAME, "0", nullptr, &kSimulated, nullptr};
+
 }  // namespace
 
-constexpr Board::Board() noexcept
-    : console_(kUart0), clock_(kMtime, kMtime_hz / 1'000'000), store_(kStoreFormat, records) {}
-
-namespace {
-
-Board instance;
-
-}  // namespace
-
-Status Board::start() noexcept {
+Status start_board() noexcept {
   reg(kPlicPriority + 4 * kUart0Interrupt) = 1;
   reg(kPlicThreshold) = 0;
   reg(kPlicEnable) = 1U << kUart0Interrupt;
   // After that: QEMU's controller overlooks what was pending before it was enabled.
-  console_.start(kUartClock_hz, kBaud);
+  hardware.console.start(kUartClock_hz, kBaud);
   enable_external_interrupts();
-  return stream_.configure(sim::BenchSettings{});
+  return hardware.stream.configure(kBench);
 }
 
-Board& board() noexcept { return instance; }
+const app::Ports& ports() noexcept { return kPorts; }
+
+const app::Board& about() noexcept { return kAbout; }
+
+bool console_sent() noexcept { return hardware.console.sent(); }
 
 // One at a time: what else is pending comes back at once.
 void on_external_interrupt() noexcept {
@@ -51,7 +83,7 @@ void on_external_interrupt() noexcept {
     return;
   }
   if (number == kUart0Interrupt) {
-    instance.console().on_interrupt();
+    hardware.console.on_interrupt();
   }
   reg(kPlicClaim) = number;
 }
@@ -63,11 +95,11 @@ void reset() noexcept {
 }
 
 bool lead_drive_to_zero() noexcept {
-  sim::SimBench& stream = instance.stream();
+  sim::SimBench& stream = hardware.stream;
   stream.stop();
   return stream.drive_is_at_zero();
 }
 
-void write_polled(Span<const char> text) noexcept { instance.console().write_polled(text); }
+void write_polled(Span<const char> text) noexcept { hardware.console.write_polled(text); }
 
 }  // namespace emax::board

@@ -1,31 +1,62 @@
-// The board's peripherals, and what its interrupts and faults lead to.
+// Arm's MPS2 board, as its application notes AN386 (Cortex-M4F) and AN500 (Cortex-M7) make it: its
+// peripherals, and what its interrupts and faults lead to.
 #include "emax/board/board.hpp"
 
+#include <cstdint>
+
+#include "emax/board/cmsdk_clock.hpp"
+#include "emax/board/cmsdk_uart.hpp"
+#include "emax/board/cmsdk_watchdog.hpp"
 #include "emax/board/cortex_m.hpp"
 #include "emax/board/fault_report.hpp"
+#include "emax/board/ram_store.hpp"
 #include "emax/board/reset_cause.hpp"
+#include "emax/board/simulated_bench.hpp"
 #include "emax/board/store_format.hpp"
+#include "emax/sim/sim_bench.hpp"
 
 namespace emax::board {
 namespace {
 
+constexpr std::uint32_t kClock_hz = EMAX_BOARD_CLOCK_HZ;
+constexpr std::uint32_t kBaud = 115200;
+constexpr std::uint32_t kWatchdogPeriod_us = 10'000'000;
+
+// Timer 0 is free, for measurements.
+constexpr std::uintptr_t kTimer1 = 0x40001000;
+constexpr std::uintptr_t kUart0 = 0x40004000;
+constexpr std::uintptr_t kWatchdog = 0x40008000;
+constexpr unsigned kUart0ReceiveInterrupt = 0;
+constexpr unsigned kUart0TransmitInterrupt = 1;
+constexpr unsigned kTimer1Interrupt = 9;
+
+static_assert(kClock_hz % 1'000'000 == 0);
+constexpr std::uint32_t kCyclesPer_us = kClock_hz / 1'000'000;
+// UART0 rounds its divider down; it must stay within 1 % of the rate.
+static_assert(kClock_hz / kBaud * kBaud > kClock_hz / 100 * 99);
+static_assert(kWatchdogPeriod_us <= 0xFFFFFFFF / kCyclesPer_us);
+
 [[gnu::section(".store")]] std::uint8_t records[kStoreFormat.slot_count * kStoreFormat.slot_bytes];
 
-}  // namespace
+struct Hardware {
+  CmsdkUart console{kUart0, kUart0TransmitInterrupt};
+  CmsdkClock clock{kTimer1, kCyclesPer_us};
+  CmsdkWatchdog watchdog{kWatchdog, kCyclesPer_us, kWatchdogPeriod_us};
+  RamStore store{kStoreFormat, records};
+  sim::SimBench stream;
+};
 
-constexpr Board::Board() noexcept
-    : console_(kUart0, kUart0TransmitInterrupt),
-      clock_(kTimer1, kCyclesPer_us),
-      watchdog_(kWatchdog, kCyclesPer_us, kWatchdogPeriod_us),
-      store_(kStoreFormat, records) {}
+Hardware hardware;
+constexpr app::Ports kPorts = {hardware.stream, hardware.console, hardware.clock,
+                               &hardware.watchdog, &hardware.store};
 
-namespace {
+constexpr sim::BenchSettings kBench = {};
+constexpr app::SimulatedBench kSimulated = describe(kBench);
+constexpr app::Board kAbout = {EMAX_BOARD_NAME, "0", nullptr, &kSimulated, nullptr};
 
-Board instance;
-
-void on_receive() { instance.console().on_receive(); }
-void on_transmit() { instance.console().on_transmit(); }
-void on_clock() { instance.clock().on_wrap(); }
+void on_receive() { hardware.console.on_receive(); }
+void on_transmit() { hardware.console.on_transmit(); }
+void on_clock() { hardware.clock.on_wrap(); }
 
 constexpr VectorTable make_vectors() {
   VectorTable table = {stack_top, start, on_watchdog, {}, {}};
@@ -44,27 +75,32 @@ constexpr VectorTable make_vectors() {
 }  // namespace
 
 extern "C" {
-[[gnu::section(".start")]] constexpr VectorTable vectors = make_vectors();
+[[gnu::section(".start")]] alignas(kVectorTableAlignment) constexpr VectorTable vectors =
+    make_vectors();
 }
 
-Status Board::start() noexcept {
-  watchdog_.set_cause(take_watchdog_reset());
-  clock_.start();
-  console_.start(kClock_hz, kBaud);
+Status start_board() noexcept {
+  hardware.watchdog.set_cause(take_watchdog_reset());
+  hardware.clock.start();
+  hardware.console.start(kClock_hz, kBaud);
   enable_interrupt(kTimer1Interrupt);
   enable_interrupt(kUart0ReceiveInterrupt);
   enable_interrupt(kUart0TransmitInterrupt);
-  return stream_.configure(sim::BenchSettings{});
+  return hardware.stream.configure(kBench);
 }
 
-Board& board() noexcept { return instance; }
+const app::Ports& ports() noexcept { return kPorts; }
+
+const app::Board& about() noexcept { return kAbout; }
+
+bool console_sent() noexcept { return hardware.console.sent(); }
 
 bool lead_drive_to_zero() noexcept {
-  sim::SimBench& stream = instance.stream();
+  sim::SimBench& stream = hardware.stream;
   stream.stop();
   return stream.drive_is_at_zero();
 }
 
-void write_polled(Span<const char> text) noexcept { instance.console().write_polled(text); }
+void write_polled(Span<const char> text) noexcept { hardware.console.write_polled(text); }
 
 }  // namespace emax::board

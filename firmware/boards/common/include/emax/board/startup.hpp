@@ -12,7 +12,7 @@ namespace emax::board {
 /// @returns What the image takes of the RAM, without the stack.
 std::size_t static_bytes() noexcept;
 
-/// Starts the board anew, as its reset button would.
+/// Of the board, or of its core: starts it anew, as its reset button would.
 [[noreturn]] void reset() noexcept;
 
 }  // namespace emax::board

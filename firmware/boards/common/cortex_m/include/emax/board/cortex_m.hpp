@@ -10,8 +10,8 @@ namespace emax::board {
 
 using InterruptHandler = void (*)();
 
-/// Interrupts that a vector table has room for.
-inline constexpr std::size_t kInterrupts = 32;
+/// Interrupts that a vector table has room for: those of the board.
+inline constexpr std::size_t kInterrupts = EMAX_BOARD_INTERRUPTS;
 
 /// What the processor reads at address 0. The board defines it, in the section .start.
 struct VectorTable {
@@ -22,9 +22,20 @@ struct VectorTable {
   InterruptHandler interrupt[kInterrupts];
 };
 
+/// The register of the table's address holds no lower bits than these (Armv7-M Architecture
+/// Reference Manual, B1.5.3): the next power of two, 128 at least.
+constexpr std::size_t vector_table_alignment(std::size_t bytes) noexcept {
+  std::size_t alignment = 128;
+  while (alignment < bytes) {
+    alignment *= 2;
+  }
+  return alignment;
+}
+inline constexpr std::size_t kVectorTableAlignment = vector_table_alignment(sizeof(VectorTable));
+
 extern "C" {
 
-extern const VectorTable vectors;
+alignas(kVectorTableAlignment) extern const VectorTable vectors;
 extern std::uint32_t stack_top[];
 
 /// Where the processor starts: switches the floating point unit on, before anything could use it,

@@ -1,4 +1,5 @@
-// Timer 0 of the boards MPS2: an instruction takes 64 ns of the emulator's time, a tick 40 ns.
+// A timer of the Cortex-M System Design Kit, of 32 bits: an instruction takes 64 ns of the
+// emulator's time, a tick 40 ns.
 #include "emax/board/registers.hpp"
 
 #include "instruction_counter.hpp"

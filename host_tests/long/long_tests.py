@@ -1,0 +1,59 @@
+"""Runs the tests of a build tree one after the other and lists those that take long.
+
+usage: long_tests.py CTEST TREE LIST
+
+A time is what a test takes of a processor, so it matters little what else runs. The list has no names of configurations:
+it holds for all builds for a PC.
+"""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+LONG_S = 1.0
+HEAD = """\
+Tests that take more than a second of a processor: they get the label `long`, which the workflow `quick` leaves out.
+Written by the target long_tests of build/host.
+
+"""
+
+
+def main() -> int:
+    ctest, tree, list_file = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+    shown = subprocess.run([ctest, "--show-only=json-v1"], cwd=tree, stdout=subprocess.PIPE, check=True).stdout
+    long, total_s = {}, 0.0
+    tests = json.loads(shown)["tests"]
+    for test in tests:
+        seconds = time_of(test)
+        total_s += seconds
+        if seconds > LONG_S:
+            long[test["name"].partition(".")[2]] = seconds
+    list_file.write_text(HEAD + "".join(f"{name} {long[name]:.0f} s\n" for name in sorted(long)))
+    print(f"{len(long)} of {len(tests)} tests are long: {sum(long.values()):.0f} of {total_s:.0f} s")
+    return 0
+
+
+def time_of(test: dict) -> float:
+    properties = {entry["name"]: entry["value"] for entry in test.get("properties", [])}
+    before = used_s()
+    subprocess.run(
+        test["command"],
+        cwd=properties.get("WORKING_DIRECTORY", os.getcwd()),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        check=False,
+    )
+    return used_s() - before
+
+
+def used_s() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+if __name__ == "__main__":
+    sys.exit(main())
