@@ -246,7 +246,7 @@ constexpr Option kOptions[] = {
     {"acceleration-limit", nullptr, "MPS2", "20", "a number of m/s^2 above 0",
      "peak acceleration never to exceed, in m/s^2",
      [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.limit_mps2);
+       return take_number(value, options.sweep.acceleration_limit_mps2);
      },
      true},
     {"drive-limit", nullptr, "VOLTS", "5", "a number of V above 0",

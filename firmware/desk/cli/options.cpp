@@ -106,12 +106,11 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
 
 // What is one number on the bench and in the settings of the sweep.
 void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& options) {
-  const app::SweepSettings by_default;
   const bool is_given = std::any_of(all.begin(), all.end(), [](const Given& given) {
     return given.option->name == "reference-uncertainty";
   });
   if (!is_given && options.measures()) {
-    options.reference_uncertainty_percent = by_default.reference.expanded_percent;
+    options.reference_uncertainty_percent = app::default_sweep_settings().reference.expanded_percent;
   }
   sim::BenchSettings& bench = options.bench;
   app::SweepSettings& sweep = options.sweep;

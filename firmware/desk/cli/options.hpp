@@ -19,7 +19,7 @@ namespace emax::host {
 /// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
 /// neither, from a measurement on the simulated bench.
 struct ReportOptions {
-  app::Settings settings;
+  app::Settings settings = app::kDefaultSettings;
   std::string points_path;  ///< "-" for standard input; empty for none.
   std::string model_text;   ///< As it was given; empty for none.
   app::Device device = {};  ///< What `model_text` says.
@@ -27,7 +27,7 @@ struct ReportOptions {
   /// Expanded. Without the option it is what `sweep` says on the bench, and 0 else.
   double reference_uncertainty_percent = 0.0;
   sim::BenchSettings bench;
-  app::SweepSettings sweep;
+  app::SweepSettings sweep = app::default_sweep_settings();
   std::string device_name;  ///< This and the next four are labels, empty if not given.
   std::string serial;
   std::string operated_by;

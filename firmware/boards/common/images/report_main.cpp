@@ -28,7 +28,7 @@ constexpr int kBadInput = 2;
 constexpr int kFault = 3;
 
 struct Job {
-  app::Settings settings;
+  app::Settings settings = app::kDefaultSettings;
   app::Device device;
   bool measures = true;
 };
@@ -132,7 +132,7 @@ class Work {
 };
 
 Status Work::measure(sim::SimBench& bench) noexcept {
-  Status status = sweep_.start(app::SweepSettings(), bench, workspace_.sweep);
+  Status status = sweep_.start(app::default_sweep_settings(), bench, workspace_.sweep);
   if (status != Status::kOk) {
     return status;
   }

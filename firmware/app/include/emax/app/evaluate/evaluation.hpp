@@ -326,29 +326,7 @@ class Evaluation {
   void add_trend_point(double energy) noexcept;
   void end_trend() noexcept;
 
-  // Defaults that are not zero would take flash for the whole object.
-  static constexpr Settings kNoSettings = {0,
-                                           0.0,
-                                           GainMode::kAuto,
-                                           0.0,
-                                           0.0,
-                                           false,
-                                           0.0,
-                                           Criterion::kIntegralSquareError,
-                                           {},
-                                           0.0,
-                                           0,
-                                           0,
-                                           false,
-                                           0.0,
-                                           {},
-                                           false,
-                                           {},
-                                           {},
-                                           {},
-                                           0};
-
-  Settings settings_ = kNoSettings;
+  Settings settings_;
   Device device_;
   Wlsp fit_;
   WlspDraws draws_;
