@@ -19,14 +19,13 @@ app::MemoryUse memory_use() noexcept {
 }
 
 [[noreturn]] void run() noexcept {
-  static app::InPlace<app::SimulatedBench> bench_memory;
+  static app::SimulatedBench simulated;
   static app::InPlace<app::Instrument> instrument_memory;
   Board& hardware = board();
   (void)hardware.start();  // A bench that is not there answers so to whoever starts a sweep.
   const sim::Device& device = hardware.stream().settings().device;
-  const app::SimulatedBench& simulated = bench_memory.make(
-      app::SimulatedBench{hardware.stream().settings().seed,
-                          {device.sensitivity, device.natural_frequency_hz, device.damping}});
+  simulated = {hardware.stream().settings().seed,
+               {device.sensitivity, device.natural_frequency_hz, device.damping}};
   const app::Ports ports = {hardware.stream(), hardware.console(), hardware.clock(),
                             &hardware.watchdog(), &hardware.store()};
   app::Board about;

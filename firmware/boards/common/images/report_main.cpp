@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/app/base/in_place.hpp"
 #include "emax/app/base/text_writer.hpp"
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/measure/sweep.hpp"
@@ -28,9 +27,9 @@ constexpr int kBadInput = 2;
 constexpr int kFault = 3;
 
 struct Job {
-  app::Settings settings = app::kDefaultSettings;
+  app::Settings settings;
   app::Device device;
-  bool measures = true;
+  bool measures = false;
 };
 
 /// Reads numbers with commas between them.
@@ -170,19 +169,18 @@ void Work::print(const Job& job, const sim::SimBench& bench, app::TextWriter& ou
 }
 
 int run() noexcept {
-  static app::InPlace<Job> job_memory;
-  static app::InPlace<Work> work_memory;
+  static Job job;
+  static Work work;
   Status status = board().start();
   ConsoleSink sink(board().console());
   app::TextWriter out(sink);
-  Job& job = job_memory.make();
+  job = {app::kDefaultSettings, {}, true};
   std::array<char, kCommandLineRoom> line = {};
   if (!read_job({line.data(), read_command_line(line)}, job)) {
     out.text(
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;
   }
-  Work& work = work_memory.make();
   if (status == Status::kOk) {
     status = work.run(job, board().stream());
   }
