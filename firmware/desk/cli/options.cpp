@@ -110,7 +110,8 @@ void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& option
     return given.option->name == "reference-uncertainty";
   });
   if (!is_given && options.measures()) {
-    options.reference_uncertainty_percent = app::default_sweep_settings().reference.expanded_percent;
+    options.reference_uncertainty_percent =
+        app::default_sweep_settings().reference.expanded_percent;
   }
   sim::BenchSettings& bench = options.bench;
   app::SweepSettings& sweep = options.sweep;

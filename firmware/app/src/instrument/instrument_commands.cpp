@@ -170,7 +170,7 @@ constexpr scpi::Command<Instrument> kUncertainty[] = {
 // clang-format on
 
 template <std::size_t kSize>
-constexpr std::size_t size_of(const scpi::Command<Instrument> (& /*part*/)[kSize]) noexcept {
+constexpr std::size_t size_of(const scpi::Command<Instrument> (&/*part*/)[kSize]) noexcept {
   return kSize;
 }
 
@@ -199,7 +199,8 @@ constexpr auto all_commands() noexcept {
 }
 
 constexpr auto kCommands = all_commands();
-static_assert(kCommands.count == size_of(kCommands.rows), "a setting of a group that is not listed");
+static_assert(kCommands.count == size_of(kCommands.rows),
+              "a setting of a group that is not listed");
 static_assert(scpi::first_bad_row(kCommands.rows) == kCommands.count);
 
 }  // namespace

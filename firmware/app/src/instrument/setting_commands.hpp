@@ -97,8 +97,8 @@ struct CommandTable {
   /// Adds the commands of one group of settings.
   template <SettingsOf kOf, std::size_t kRows>
   constexpr void add_settings(const SettingRow (&table)[kRows], SettingGroup group) noexcept {
-    constexpr std::size_t kCommands =
-        kOf == SettingsOf::kSweep ? count_commands(kSweepSettingRows) : count_commands(kSettingRows);
+    constexpr std::size_t kCommands = kOf == SettingsOf::kSweep ? count_commands(kSweepSettingRows)
+                                                                : count_commands(kSettingRows);
     constexpr auto kHandlers = setting_handlers<kOf>(std::make_index_sequence<kCommands>());
     std::size_t command = 0;
     for (const SettingRow& row : table) {

@@ -236,7 +236,8 @@ void Sweep::end_silence(hal::AnalogStream& stream, SweepWorkspace& work) noexcep
 
 double Sweep::aim_mps2(const SweepWorkspace& work) const noexcept {
   const double wanted = work.level_scale_ * settings_.level_mps2;
-  const double most = (work.target_.is_close ? kLimitShare : kCautiousShare) * settings_.acceleration_limit_mps2;
+  const double most =
+      (work.target_.is_close ? kLimitShare : kCautiousShare) * settings_.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
 }
 

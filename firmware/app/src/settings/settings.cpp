@@ -1,4 +1,5 @@
-// Checks and comparisons of the settings of an evaluation: ranges by the rows, here what limits one another.
+// Checks and comparisons of the settings of an evaluation: ranges by the rows, here what limits one
+// another.
 #include "emax/app/settings/settings.hpp"
 
 #include "emax/app/settings/settings_rows.hpp"

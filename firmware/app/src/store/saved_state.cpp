@@ -151,8 +151,7 @@ void go_through(const SettingField& field, AnySettings* settings, Fields& fields
                             member_at<std::size_t>(settings, field.beside));
     case SettingKind::kWholes:
       for (std::size_t i = 0; i < field.last; ++i) {
-        fields.whole(
-            member_at<std::uint32_t>(settings, field.offset + i * sizeof(std::uint32_t)));
+        fields.whole(member_at<std::uint32_t>(settings, field.offset + i * sizeof(std::uint32_t)));
       }
       return;
   }

@@ -7,8 +7,8 @@
 
 namespace emax::app {
 
-/// Memory for one `T` whose constructor takes arguments, or that shares its memory with others. As a
-/// static object it is all zero, so it sits in .bss and needs no initialiser.
+/// Memory for one `T` whose constructor takes arguments, or that shares its memory with others. As
+/// a static object it is all zero, so it sits in .bss and needs no initialiser.
 ///
 ///     static InPlace<Instrument> memory;
 ///     Instrument& instrument = memory.make(...);

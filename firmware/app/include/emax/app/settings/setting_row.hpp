@@ -43,8 +43,8 @@ struct CommandText {
   double max = 0.0;
 };
 
-/// One setting: what boards keep of it, and its texts. Rows are constants that other tables are made
-/// from when they are compiled: what a program does not use of them takes no memory in it.
+/// One setting: what boards keep of it, and its texts. Rows are constants that other tables are
+/// made from when they are compiled: what a program does not use of them takes no memory in it.
 struct SettingRow {
   SettingField field;
   SettingGroup group = SettingGroup::kDrive;
@@ -161,7 +161,8 @@ constexpr SettingMember setting_member(std::size_t offset) noexcept {
   return {StorageOf<T>::kKind, offset, StorageOf<T>::kRoom};
 }
 
-/// The member of a structure of settings, by its name: nothing else has both its type and its place.
+/// The member of a structure of settings, by its name: nothing else has both its type and its
+/// place.
 #define EMAX_SETTING(Structure, member) \
   ::emax::app::setting_member<decltype(Structure::member)>(offsetof(Structure, member))
 
@@ -178,8 +179,8 @@ constexpr SettingRow setting(const char* name, const SettingMember& member, Sett
   return row;
 }
 
-/// A row for two members that are one setting: a number with the byte that says whether it holds, or
-/// a list with its count.
+/// A row for two members that are one setting: a number with the byte that says whether it holds,
+/// or a list with its count.
 constexpr SettingRow setting(const char* name, const SettingMember& member, std::size_t beside,
                              SettingGroup group, Concern concern) noexcept {
   SettingRow row = setting(name, member, group, concern);

@@ -33,8 +33,8 @@ struct Settings {
   int filter_order = 0;
   double cutoff_hz = 0.0;
   GainMode gain_mode = GainMode::kAuto;
-  double gain = 0.0;        ///< In V/(m/s^2); used by GainMode::kFixed only.
-  double duration_s = 0.0;  ///< T.
+  double gain = 0.0;           ///< In V/(m/s^2); used by GainMode::kFixed only.
+  double duration_s = 0.0;     ///< T.
   bool limit_is_auto = false;  ///< a is the number of S, as in the paper.
   double limit_mps2 = 0.0;     ///< a; used if `limit_is_auto` is false.
   Criterion criterion = Criterion::kIntegralSquareError;

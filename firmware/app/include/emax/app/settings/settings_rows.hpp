@@ -28,8 +28,7 @@ inline constexpr SettingRow kSettingRows[] = {
         .as_command("CALCulate:FILTer:ORDer", "<L>", "Order of the reference filter"),
     setting("cutoff", EMAX_SETTING(Settings, cutoff_hz), SettingGroup::kFilter, Concern::kEnergy)
         .within(kMinFrequency_hz, kMaxFrequency_hz, "from 0.001 to 1e9 Hz")
-        .as_option(
-            {nullptr, "HZ", "a number of Hz above 0", "cutoff frequency (-3 dB) in Hz"})
+        .as_option({nullptr, "HZ", "a number of Hz above 0", "cutoff frequency (-3 dB) in Hz"})
         .as_command("CALCulate:FILTer:FREQuency", "<Hz>", "Its cutoff frequency", "HZ"),
     setting("gain", EMAX_SETTING(Settings, gain), offsetof(Settings, gain_mode),
             SettingGroup::kFilter, Concern::kEnergy)
@@ -42,8 +41,8 @@ inline constexpr SettingRow kSettingRows[] = {
                     "Its gain; AUTO: the estimate of S, TRACk: the S of each trial"),
     setting("time", EMAX_SETTING(Settings, duration_s), SettingGroup::kSignal, Concern::kEnergy)
         .within(kAboveZero, kMaxDuration_s, "more than 0 and at most 1000 s")
-        .as_option({nullptr, "SECONDS", "a number of seconds above 0",
-                    "length T of the signal in s"})
+        .as_option(
+            {nullptr, "SECONDS", "a number of seconds above 0", "length T of the signal in s"})
         .as_command("CALCulate:ENERgy:TIME", "<T>", "Length of the signal", "S")
         .on_console_within(kNanoSecond, kMaxDuration_s),
     setting("limit", EMAX_SETTING(Settings, limit_mps2), offsetof(Settings, limit_is_auto),
@@ -94,8 +93,8 @@ inline constexpr SettingRow kSettingRows[] = {
     setting("probability", EMAX_SETTING(Settings, probability), SettingGroup::kCoverage,
             Concern::kTrials)
         .within(kAboveZero, kBelowOne, "more than 0 and less than 1")
-        .as_option({nullptr, "P", "a number between 0 and 1",
-                    "coverage probability p of the intervals"})
+        .as_option(
+            {nullptr, "P", "a number between 0 and 1", "coverage probability p of the intervals"})
         .as_command("CALCulate:MCARlo:PROBability", "<p>", "Coverage probability of the intervals")
         .on_console_within(1e-6, 0.999999),
     setting("distribution", EMAX_SETTING(Settings, distribution), SettingGroup::kCoverage,

@@ -24,8 +24,8 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             offsetof(SweepSettings, frequency_count), SettingGroup::kDrive, Concern::kSweep),
     setting("level", EMAX_SETTING(SweepSettings, level_mps2), SettingGroup::kDrive, Concern::kSweep)
         .within(kSmallest, kLargest, "above 0, in m/s^2")
-        .as_option({nullptr, "MPS2", "a number of m/s^2 above 0",
-                    "peak acceleration to reach, in m/s^2"})
+        .as_option(
+            {nullptr, "MPS2", "a number of m/s^2 above 0", "peak acceleration to reach, in m/s^2"})
         .as_command("SOURce:LEVel", "<m/s2>", "Peak acceleration to reach", "M/S2"),
     setting("acceleration limit", EMAX_SETTING(SweepSettings, acceleration_limit_mps2),
             SettingGroup::kDrive, Concern::kSweep)
