@@ -29,7 +29,7 @@ using emax::hal::StoreFormat;
 using emax::host::FileBytes;
 using emax::host::FileStore;
 using emax::host::kFileStoreFormat;
-using emax::host::Problem;
+using emax::desk::Problem;
 using emax::host::VolatileBytes;
 using emax::test::violated_by_store;
 
@@ -157,7 +157,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
     std::ofstream(path, std::ios::binary) << text;
     FileBytes file;
     const Problem problem = file.open(path);
-    EXPECT_EQ(problem.status, emax::host::ExitStatus::kBadInput);
+    EXPECT_EQ(problem.status, emax::desk::ExitStatus::kBadInput);
     EXPECT_EQ(problem.line, "--store: " + path +
                                 ": something else, or damaged; expected a file that --store has "
                                 "made, or a new name");
@@ -172,7 +172,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
             "new name");
   ASSERT_EQ(unlink(path.c_str()), 0);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_EQ(file.open(path).status, emax::host::ExitStatus::kBadInput) << "a pipe: no waiting";
+  EXPECT_EQ(file.open(path).status, emax::desk::ExitStatus::kBadInput) << "a pipe: no waiting";
 }
 
 TEST(FileStore, OneProgramAtATime) {

@@ -15,9 +15,9 @@
 namespace {
 
 namespace fs = std::filesystem;
-using emax::host::GnuplotEnd;
-using emax::host::GnuplotRun;
-using emax::host::run_gnuplot;
+using emax::desk::GnuplotEnd;
+using emax::desk::GnuplotRun;
+using emax::desk::run_gnuplot;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
@@ -74,7 +74,7 @@ TEST(Gnuplot, OneThatIsSlowIsWaitedFor) {
 }
 
 TEST(Gnuplot, TheProgramGivesItTwentySeconds) {
-  EXPECT_EQ(emax::host::kDrawingTime, std::chrono::seconds(20));
+  EXPECT_EQ(emax::desk::kDrawingTime, std::chrono::seconds(20));
 }
 
 }  // namespace

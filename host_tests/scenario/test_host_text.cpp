@@ -14,10 +14,10 @@
 namespace {
 
 using emax::app::TextWriter;
-using emax::host::characters_in;
-using emax::host::printable;
-using emax::host::rounded_up;
-using emax::host::shortened;
+using emax::desk::characters_in;
+using emax::desk::printable;
+using emax::desk::rounded_up;
+using emax::desk::shortened;
 using emax::test::text_of;
 
 std::string repeated(const std::string& text, int count) {
