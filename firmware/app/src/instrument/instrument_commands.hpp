@@ -31,6 +31,14 @@ struct InstrumentCommands {
   /// one.
   static void setting(Instrument& i, Call& call, std::size_t index) noexcept;
   static void sweep_setting(Instrument& i, Call& call, std::size_t index) noexcept;
+  template <std::size_t kIndex>
+  static void setting(Instrument& i, Call& call) noexcept {
+    setting(i, call, kIndex);
+  }
+  template <std::size_t kIndex>
+  static void sweep_setting(Instrument& i, Call& call) noexcept {
+    sweep_setting(i, call, kIndex);
+  }
 
   static void seed(Instrument& i, Call& call) noexcept;
   static void reference(Instrument& i, Call& call) noexcept;

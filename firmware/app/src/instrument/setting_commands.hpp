@@ -58,20 +58,14 @@ constexpr std::array<SettingCommand, kCommands> setting_commands(
 /// Which settings a table's rows belong to.
 enum class SettingsOf : std::uint8_t { kEvaluation, kSweep };
 
-template <SettingsOf kOf, std::size_t kCommand>
-void handle_setting(Instrument& instrument, scpi::Call& call) {
-  if constexpr (kOf == SettingsOf::kSweep) {
-    InstrumentCommands::sweep_setting(instrument, call, kCommand);
-  } else {
-    InstrumentCommands::setting(instrument, call, kCommand);
-  }
-}
-
 /// One handler for each of the commands.
 template <SettingsOf kOf, std::size_t... kIndices>
 constexpr auto setting_handlers(std::index_sequence<kIndices...> /*indices*/) noexcept {
   using Handler = void (*)(Instrument&, scpi::Call&);
-  return std::array<Handler, sizeof...(kIndices)>{handle_setting<kOf, kIndices>...};
+  using C = InstrumentCommands;
+  constexpr bool kIsSweep = kOf == SettingsOf::kSweep;
+  return std::array<Handler, sizeof...(kIndices)>{
+      (kIsSweep ? Handler{C::sweep_setting<kIndices>} : Handler{C::setting<kIndices>})...};
 }
 
 /// Numbers have limits that a query may ask for.

@@ -78,23 +78,22 @@ SettingsError check_trend(const Settings& settings) noexcept {
   return {};
 }
 
-/// A check that comes behind the range of a row.
-struct OwnCheck {
-  std::size_t row;
-  SettingsError (*check)(const Settings& settings) noexcept;
-};
-constexpr OwnCheck kOwnChecks[] = {{row_of(kSettingRows, "step"), check_step},
-                                   {row_of(kSettingRows, "probability"), check_probability},
-                                   {row_of(kSettingRows, "seed"), check_seed},
-                                   {row_of(kSettingRows, "trend"), check_trend}};
+constexpr std::size_t row(const char* name) noexcept { return row_of(kSettingRows, name); }
 
-SettingsError own_check(std::size_t row, const Settings& settings) noexcept {
-  for (const OwnCheck& own : kOwnChecks) {
-    if (own.row == row) {
-      return own.check(settings);
-    }
+/// What comes behind the range of a row.
+SettingsError own_check(std::size_t index, const Settings& settings) noexcept {
+  switch (index) {
+    case row("step"):
+      return check_step(settings);
+    case row("probability"):
+      return check_probability(settings);
+    case row("seed"):
+      return check_seed(settings);
+    case row("trend"):
+      return check_trend(settings);
+    default:
+      return {};
   }
-  return {};
 }
 
 using Concerns = std::uint32_t;
@@ -116,11 +115,11 @@ bool is_same(const Settings& a, const Settings& b, Concerns concerns) noexcept {
 
 SettingsError check(const Settings& settings) noexcept {
   const Span<const SettingField> fields = fields_of(settings);
-  for (std::size_t row = 0; row < fields.size(); ++row) {
-    if (!is_in_range(fields[row], &settings)) {
-      return {fields[row].name, fields[row].expectation};
+  for (std::size_t index = 0; index < fields.size(); ++index) {
+    if (!is_in_range(fields[index], &settings)) {
+      return {fields[index].name, fields[index].expectation};
     }
-    const SettingsError error = own_check(row, settings);
+    const SettingsError error = own_check(index, settings);
     if (error.setting != nullptr) {
       return error;
     }

@@ -46,9 +46,7 @@ SettingsError check_frequencies(const SweepSettings& s, const hal::StreamFormat&
   return {};
 }
 
-SettingsError check_reference_table(const SweepSettings& s,
-                                    const hal::StreamFormat& /*format*/) noexcept {
-  const ReferenceCalibration& r = s.reference;
+SettingsError check_reference_table(const ReferenceCalibration& r) noexcept {
   if (r.count < 1 || r.count > kMaxReferencePoints) {
     return {"reference table", "1 to 32 points"};
   }
@@ -66,15 +64,6 @@ SettingsError check_reference_table(const SweepSettings& s,
   return {};
 }
 
-// What a range of its own cannot say, in the words of the row.
-bool suits_level(const SweepSettings& s, const hal::StreamFormat& /*format*/) noexcept {
-  return s.acceleration_limit_mps2 >= s.level_mps2;
-}
-
-bool suits_converter(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
-  return s.drive_limit_v <= format.drive_full_scale_v;
-}
-
 bool suits_ramp(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
   const double slowest = s.drive_limit_v / static_cast<double>(hal::kMaxRampFrames);
   const double slew_v = s.slew_v_per_s / format.sample_rate_hz;
@@ -82,47 +71,38 @@ bool suits_ramp(const SweepSettings& s, const hal::StreamFormat& format) noexcep
   return slew_v >= slowest * (1.0 + 1e-6) && slew_v <= kLargest;
 }
 
-bool suits_rate(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
-  return s.check_hz * kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
-}
-
-bool is_known_or_zero(const SweepSettings& s, const hal::StreamFormat& /*format*/) noexcept {
-  return s.expected_sensitivity == 0.0 || is_positive(s.expected_sensitivity);
-}
-
-/// A check that comes behind the range of a row: one with words of its own, or one with the row's.
-struct OwnCheck {
-  std::size_t row;
-  SettingsError (*check)(const SweepSettings& settings, const hal::StreamFormat& format) noexcept;
-  bool (*suits)(const SweepSettings& settings, const hal::StreamFormat& format) noexcept;
-};
-
 constexpr std::size_t row(const char* name) noexcept { return row_of(kSweepSettingRows, name); }
 
-constexpr OwnCheck kOwnChecks[] = {
-    {row("sweep frequencies"), check_frequencies, nullptr},
-    {row("acceleration limit"), nullptr, suits_level},
-    {row("drive limit"), nullptr, suits_converter},
-    {row("slew"), nullptr, suits_ramp},
-    {row("reference table"), check_reference_table, nullptr},
-    {row("check frequency"), nullptr, suits_rate},
-    {row("expected sensitivity"), nullptr, is_known_or_zero},
-};
-
-SettingsError own_check(std::size_t index, const SweepSettings& settings,
-                        const hal::StreamFormat& format) noexcept {
-  for (const OwnCheck& own : kOwnChecks) {
-    if (own.row != index) {
-      continue;
-    }
-    if (own.check != nullptr) {
-      return own.check(settings, format);
-    }
-    const SettingField& field = fields_of(settings)[index];
-    return own.suits(settings, format) ? SettingsError{}
-                                       : SettingsError{field.name, field.expectation};
+/// False where a value is in its range but does not go with others or with the stream.
+bool is_suitable(std::size_t index, const SweepSettings& s,
+                 const hal::StreamFormat& format) noexcept {
+  switch (index) {
+    case row("acceleration limit"):
+      return s.acceleration_limit_mps2 >= s.level_mps2;
+    case row("drive limit"):
+      return s.drive_limit_v <= format.drive_full_scale_v;
+    case row("slew"):
+      return suits_ramp(s, format);
+    case row("check frequency"):
+      return s.check_hz * kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
+    case row("expected sensitivity"):
+      return s.expected_sensitivity == 0.0 || is_positive(s.expected_sensitivity);
+    default:
+      return true;
   }
-  return {};
+}
+
+/// What has other words than the row.
+SettingsError own_check(std::size_t index, const SweepSettings& s,
+                        const hal::StreamFormat& format) noexcept {
+  switch (index) {
+    case row("sweep frequencies"):
+      return check_frequencies(s, format);
+    case row("reference table"):
+      return check_reference_table(s.reference);
+    default:
+      return {};
+  }
 }
 
 hal::Word to_word(double volts, double full_scale_v) noexcept {
@@ -177,7 +157,7 @@ double sensitivity_at(const ReferenceCalibration& calibration, double frequency_
 SettingsError check(const SweepSettings& settings, const hal::StreamFormat& format) noexcept {
   const Span<const SettingField> fields = fields_of(settings);
   for (std::size_t index = 0; index < fields.size(); ++index) {
-    if (!is_in_range(fields[index], &settings)) {
+    if (!is_in_range(fields[index], &settings) || !is_suitable(index, settings, format)) {
       return {fields[index].name, fields[index].expectation};
     }
     const SettingsError error = own_check(index, settings, format);
