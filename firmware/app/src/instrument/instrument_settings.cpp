@@ -1,4 +1,5 @@
 // The commands that set something and answer what is set.
+#include <array>
 #include <limits>
 
 #include "emax/app/settings/setting_field.hpp"
@@ -19,28 +20,35 @@ constexpr auto kCommands = setting_commands<count_commands(kSettingRows)>(kSetti
 constexpr auto kSweepCommands =
     setting_commands<count_commands(kSweepSettingRows)>(kSweepSettingRows);
 
-// A setting whose command is executed, in a copy of its structure.
+/// A new value: a number, a byte, or both.
+struct SettingValue {
+  double number = 0.0;
+  std::uint8_t byte = 0;
+};
+
+// A setting whose command is executed. It reads the value alone: a copy of all settings would be on
+// the stack while text becomes a number, which takes most of it.
 class SettingCall {
  public:
+  /// @param[in] current The structure with the value that is set.
   SettingCall(scpi::Call& call, const SettingCommand& command, const SettingField& field,
-              double by_default, void* next) noexcept
-      : call_(call), command_(command), field_(field), by_default_(by_default), next_(next) {}
+              const void* current) noexcept
+      : call_(call), command_(command), field_(field), current_(current) {}
 
-  /// @returns True if the copy holds what was given.
-  bool take() noexcept {
+  /// @returns True if there is a new value. A query is answered.
+  bool take(double by_default, SettingValue& value) noexcept {
+    value.number = number_in(field_, current_);
     switch (field_.kind) {
       case SettingKind::kNumber:
-        return take_number();
+        return call_.setting(rule(by_default), value.number, value.number);
       case SettingKind::kWhole:
-        return take_whole();
-      case SettingKind::kSwitch: {
-        bool& value = member_at<bool>(next_, field_.offset);
-        return call_.boolean_setting(value, value);
-      }
+        return take_whole(by_default, value.number);
+      case SettingKind::kSwitch:
+        return take_switch(value.byte);
       case SettingKind::kChoice:
-        return take_choice();
+        return take_choice(value.byte);
       case SettingKind::kNumberOrWord:
-        return take_number_or_word();
+        return take_number_or_word(value);
       case SettingKind::kNumbers:
       case SettingKind::kMoreNumbers:
       case SettingKind::kWholes:
@@ -55,61 +63,103 @@ class SettingCall {
   }
   scpi::Words words() const noexcept { return {command_.words, command_.word_count}; }
 
-  bool take_number() noexcept {
-    double& value = member_at<double>(next_, field_.offset);
-    return call_.setting(rule(by_default_), value, value);
-  }
-
-  bool take_whole() noexcept {
-    std::uint32_t& value = member_at<std::uint32_t>(next_, field_.offset);
+  bool take_whole(double by_default, double& value) noexcept {
     const IntegerRule rule = {static_cast<std::int64_t>(command_.min),
                               static_cast<std::int64_t>(command_.max),
-                              static_cast<std::int64_t>(by_default_)};
+                              static_cast<std::int64_t>(by_default)};
     std::int64_t number = 0;
-    if (!call_.integer_setting(rule, value, number)) {
+    if (!call_.integer_setting(rule, static_cast<std::int64_t>(value), number)) {
       return false;
     }
-    value = static_cast<std::uint32_t>(number);
+    value = static_cast<double>(number);
     return true;
   }
 
-  bool take_choice() noexcept {
-    std::uint8_t& value = member_at<std::uint8_t>(next_, field_.offset);
+  bool take_switch(std::uint8_t& byte) noexcept {
+    bool is_on = false;
+    const bool is_new = call_.boolean_setting(member_at<bool>(current_, field_.offset), is_on);
+    byte = is_on ? 1 : 0;
+    return is_new;
+  }
+
+  bool take_choice(std::uint8_t& byte) noexcept {
     std::size_t index = 0;
-    if (!call_.choice_setting(words(), value, index)) {
-      return false;
-    }
-    value = static_cast<std::uint8_t>(index);
-    return true;
+    const std::size_t current = member_at<std::uint8_t>(current_, field_.offset);
+    const bool is_new = call_.choice_setting(words(), current, index);
+    byte = static_cast<std::uint8_t>(index);
+    return is_new;
   }
 
   // The byte counts words, and the number as if it were one of them.
-  bool take_number_or_word() noexcept {
-    double& number = member_at<double>(next_, field_.offset);
-    std::uint8_t& mode = member_at<std::uint8_t>(next_, field_.beside);
-    const std::uint8_t number_mode = field_.number_mode;
-    std::size_t word = command_.word_count;
+  bool take_number_or_word(SettingValue& value) noexcept {
+    const std::size_t number_mode = field_.number_mode;
+    const std::size_t mode = member_at<std::uint8_t>(current_, field_.beside);
+    scpi::NumberOrWord given{value.number, command_.word_count};
     if (mode != number_mode) {
-      word = mode < number_mode ? mode : mode - std::size_t{1};
+      given.word = mode < number_mode ? mode : mode - 1;
     }
-    scpi::NumberOrWord value{number, word};
-    if (!call_.number_or_word_setting(rule(kNoDefault), words(), value, value)) {
+    if (!call_.number_or_word_setting(rule(kNoDefault), words(), given, given)) {
       return false;
     }
-    number = value.number;
-    mode = number_mode;
-    if (value.word < command_.word_count) {
-      mode = static_cast<std::uint8_t>(value.word < number_mode ? value.word : value.word + 1);
+    std::size_t byte = number_mode;
+    if (given.word < command_.word_count) {
+      byte = given.word < number_mode ? given.word : given.word + 1;
     }
+    value = {given.number, static_cast<std::uint8_t>(byte)};
     return true;
   }
 
   scpi::Call& call_;
   const SettingCommand& command_;
   const SettingField& field_;
-  double by_default_;
-  void* next_;
+  const void* current_;
 };
+
+void store(const SettingField& field, const SettingValue& value, void* settings) noexcept {
+  switch (field.kind) {
+    case SettingKind::kNumberOrWord:
+      member_at<std::uint8_t>(settings, field.beside) = value.byte;
+      [[fallthrough]];
+    case SettingKind::kNumber:
+      member_at<double>(settings, field.offset) = value.number;
+      return;
+    case SettingKind::kWhole:
+      member_at<std::uint32_t>(settings, field.offset) = static_cast<std::uint32_t>(value.number);
+      return;
+    case SettingKind::kSwitch:
+    case SettingKind::kChoice:
+      member_at<std::uint8_t>(settings, field.offset) = value.byte;
+      return;
+    case SettingKind::kNumbers:
+    case SettingKind::kMoreNumbers:
+    case SettingKind::kWholes:
+      return;
+  }
+}
+
+// These are out of line for the sake of the stack: each holds the settings of a sweep.
+[[gnu::noinline]] double default_number(const Instrument& i, const SettingField& field) noexcept {
+  const SweepSettings by_default = i.default_sweep();
+  return number_in(field, &by_default);
+}
+
+struct ReferenceValue {
+  double sensitivity = 0.0;
+  double expanded_percent = 0.0;
+};
+
+[[gnu::noinline]] ReferenceValue default_reference(const Instrument& i) noexcept {
+  const ReferenceCalibration reference = i.default_sweep().reference;
+  return {reference.sensitivity[0], reference.expanded_percent};
+}
+
+template <typename Change>
+[[gnu::noinline]] void change_sweep(Instrument& i, scpi::Call& call,
+                                    const Change& change) noexcept {
+  SweepSettings next = i.sweep_settings();
+  change(next);
+  InstrumentCommands::take(i, call, next);
+}
 
 }  // namespace
 
@@ -169,11 +219,13 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
     seed(i, call);
     return;
   }
-  Settings next = i.settings();
-  const double by_default = number_in(field, &kDefaultSettings);
-  if (!SettingCall(call, command, field, by_default, &next).take()) {
+  SettingValue value;
+  if (!SettingCall(call, command, field, &i.settings())
+           .take(number_in(field, &kDefaultSettings), value)) {
     return;
   }
+  Settings next = i.settings();
+  store(field, value, &next);
   // What is set already may be set again while it is in use, if it is a plain value.
   if (field.kind == SettingKind::kNumberOrWord || !is_same(field, &next, &i.settings())) {
     take(i, call, next);
@@ -182,12 +234,11 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
 
 void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t index) noexcept {
   const SettingCommand& command = kSweepCommands[index];
-  SweepSettings next = i.default_sweep();
-  const SettingField& field = fields_of(next)[command.field];
-  const double by_default = number_in(field, &next);
-  next = i.sweep_settings();
-  if (SettingCall(call, command, field, by_default, &next).take()) {
-    take(i, call, next);
+  const SettingField& field = fields_of(i.sweep_settings())[command.field];
+  SettingValue value;
+  if (SettingCall(call, command, field, &i.sweep_settings())
+          .take(default_number(i, field), value)) {
+    change_sweep(i, call, [&](SweepSettings& next) noexcept { store(field, value, &next); });
   }
 }
 
@@ -218,16 +269,19 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
     call.answer().number(current.sensitivity[0]).number(current.expanded_percent);
     return;
   }
-  SweepSettings next = i.default_sweep();
-  const NumberRule sensitivity = {kSmallest, kLargest, next.reference.sensitivity[0], nullptr};
-  const NumberRule percent = {0.0, kMaxPercent, next.reference.expanded_percent, scpi::kPercent};
-  next = i.sweep_settings();
-  if (!call.number(sensitivity, next.reference.sensitivity[0]) ||
-      (call.has_more() && !call.number(percent, next.reference.expanded_percent))) {
+  const ReferenceValue by_default = default_reference(i);
+  ReferenceValue value = {0.0, current.expanded_percent};
+  const NumberRule sensitivity = {kSmallest, kLargest, by_default.sensitivity, nullptr};
+  const NumberRule percent = {0.0, kMaxPercent, by_default.expanded_percent, scpi::kPercent};
+  if (!call.number(sensitivity, value.sensitivity) ||
+      (call.has_more() && !call.number(percent, value.expanded_percent))) {
     return;
   }
-  next.reference.count = 1;
-  take(i, call, next);
+  change_sweep(i, call, [&](SweepSettings& next) noexcept {
+    next.reference.sensitivity[0] = value.sensitivity;
+    next.reference.expanded_percent = value.expanded_percent;
+    next.reference.count = 1;
+  });
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
@@ -240,18 +294,22 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
     call.answer_items(current.frequency_count);
     return;
   }
-  SweepSettings next = current;
-  if (call.numbers(kFrequency, Span<double>(next.frequency_hz), next.frequency_count)) {
-    take(i, call, next);
+  std::array<double, kMaxPoints> frequency_hz = {};
+  std::size_t count = 0;
+  if (call.numbers(kFrequency, Span<double>(frequency_hz), count)) {
+    change_sweep(i, call, [&](SweepSettings& next) noexcept {
+      next.frequency_hz = frequency_hz;
+      next.frequency_count = count;
+    });
   }
 }
 
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
   const SweepSettings by_default = i.default_sweep();
-  SweepSettings next = i.sweep_settings();
-  next.frequency_hz = by_default.frequency_hz;
-  next.frequency_count = by_default.frequency_count;
-  take(i, call, next);
+  change_sweep(i, call, [&](SweepSettings& next) noexcept {
+    next.frequency_hz = by_default.frequency_hz;
+    next.frequency_count = by_default.frequency_count;
+  });
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {
