@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "emax/app/settings/setting_field.hpp"
 
@@ -230,6 +231,41 @@ constexpr std::size_t most_saved_bytes(const SettingRow (&rows)[kRows]) noexcept
     }
   }
   return bytes;
+}
+
+/// @returns How many members these rows speak of.
+template <std::size_t kRows>
+constexpr std::size_t members_in(const SettingRow (&rows)[kRows]) noexcept {
+  std::size_t members = 0;
+  for (const SettingRow& row : rows) {
+    const bool is_pair =
+        row.field.kind == SettingKind::kNumberOrWord || row.field.kind == SettingKind::kNumbers;
+    members += is_pair ? 2 : 1;
+  }
+  return members;
+}
+
+/// Stands for a member of any type.
+struct AnyMember {
+  template <typename T>
+  constexpr operator T() const noexcept;  // Never called.
+};
+
+template <typename T, typename Indices, typename = void>
+struct IsMadeOf : std::false_type {};
+template <typename T, std::size_t... kIndices>
+struct IsMadeOf<T, std::index_sequence<kIndices...>,
+                std::void_t<decltype(T{(static_cast<void>(kIndices), AnyMember{})...})>>
+    : std::true_type {};
+
+/// @returns The number of members of a structure.
+template <typename T, std::size_t kCount = 0>
+constexpr std::size_t member_count() noexcept {
+  if constexpr (IsMadeOf<T, std::make_index_sequence<kCount + 1>>::value) {
+    return member_count<T, kCount + 1>();
+  } else {
+    return kCount;
+  }
 }
 
 constexpr bool is_same_text(const char* a, const char* b) noexcept {

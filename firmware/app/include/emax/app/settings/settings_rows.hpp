@@ -131,4 +131,6 @@ inline constexpr SettingRow kSettingRows[] = {
                     "0.002,0.004,0.006,0.008,0.010"}),
 };
 
+static_assert(members_in(kSettingRows) == member_count<Settings>(), "a member without a row");
+
 }  // namespace emax::app

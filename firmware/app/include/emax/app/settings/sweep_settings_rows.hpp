@@ -93,4 +93,8 @@ inline constexpr SettingRow kSweepSettingRows[] = {
         .within(0.0, kLargest, "above 0 in V/(m/s^2), or 0 if it is not known"),
 };
 
+static_assert(members_in(kSweepSettingRows) ==
+                  member_count<SweepSettings>() - 1 + member_count<ReferenceCalibration>(),
+              "a member without a row");
+
 }  // namespace emax::app
