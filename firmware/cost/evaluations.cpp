@@ -27,7 +27,7 @@ using StageCosts = std::array<StageCost, kStages>;
 
 /// Points of the device itself, at the frequencies of a default sweep.
 Status fill(FrequencyResponse& points) noexcept {
-  const app::SweepSettings defaults;
+  const app::SweepSettings defaults = app::default_sweep_settings();
   for (std::size_t i = 0; i < defaults.frequency_count; ++i) {
     const double frequency_hz = defaults.frequency_hz[i];
     const double k = amplitude(kDevice, frequency_hz);
@@ -73,7 +73,7 @@ Status count_steps(std::uint32_t duration_ms, Rows& rows) noexcept {
       {app::Stage::kTrend, "step_trend"},
   };
   Evaluations& work = memory().evaluations.make();
-  app::Settings settings;
+  app::Settings settings = app::kDefaultSettings;
   settings.duration_s = static_cast<double>(duration_ms) / 1000.0;
   settings.trials = kTrials;
   settings.trend_s = {0.5 * settings.duration_s, settings.duration_s};
@@ -89,7 +89,7 @@ Status count_steps(std::uint32_t duration_ms, Rows& rows) noexcept {
 
 Status count_report(Rows& rows) noexcept {
   Evaluations& work = memory().evaluations.make();
-  app::Settings settings;
+  app::Settings settings = app::kDefaultSettings;
   settings.trials = kTrials;
   StageCosts costs = {};
   const Status status = run(settings, work, costs);

@@ -75,7 +75,7 @@ class EchoStream final : public hal::AnalogStream {
 
 Status count_sweep(Rows& rows) noexcept {
   Sweeps& work = memory().sweeps.make();
-  app::SweepSettings settings;
+  app::SweepSettings settings = app::default_sweep_settings();
   std::copy(kFrequencies_hz.begin(), kFrequencies_hz.end(), settings.frequency_hz.begin());
   settings.frequency_count = kFrequencies_hz.size();
   settings.check_hz = kFrequencies_hz.front();

@@ -24,6 +24,7 @@ namespace emax::host {
 namespace {
 
 using app::RecordStore;
+using desk::Problem;
 using hal::StoreFormat;
 using test::violated_by_store;
 
@@ -151,7 +152,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
     std::ofstream(path, std::ios::binary) << text;
     FileBytes file;
     const Problem problem = file.open(path);
-    EXPECT_EQ(problem.status, ExitStatus::kBadInput);
+    EXPECT_EQ(problem.status, desk::ExitStatus::kBadInput);
     EXPECT_EQ(problem.line, "--store: " + path +
                                 ": something else, or damaged; expected a file that --store has "
                                 "made, or a new name");
@@ -166,7 +167,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
             "new name");
   ASSERT_EQ(unlink(path.c_str()), 0);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_EQ(file.open(path).status, ExitStatus::kBadInput) << "a pipe: no waiting";
+  EXPECT_EQ(file.open(path).status, desk::ExitStatus::kBadInput) << "a pipe: no waiting";
 }
 
 TEST(FileStore, OneProgramAtATime) {

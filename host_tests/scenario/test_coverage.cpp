@@ -47,7 +47,7 @@ TEST(Coverage, OfFiveHundredBenches) {
     emax::sim::BenchSettings settings;
     settings.seed = seed;
     ASSERT_EQ(bench.configure(settings), Status::kOk);
-    ASSERT_EQ(sweep.start(emax::app::SweepSettings(), bench, work), Status::kOk);
+    ASSERT_EQ(sweep.start(emax::app::default_sweep_settings(), bench, work), Status::kOk);
     while (!sweep.done()) {
       sweep.step(bench, work);
     }

@@ -12,7 +12,7 @@
 
 #include "desk/pictures/gnuplot.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST(Gnuplot, OneThatIsSlowIsWaitedFor) {
 TEST(Gnuplot, TheProgramGivesItTwentySeconds) { EXPECT_EQ(kDrawingTime, std::chrono::seconds(20)); }
 
 }  // namespace
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -11,7 +11,7 @@
 #include "desk/files/rounding.hpp"
 #include "support/string_sink.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 namespace {
 
 using app::TextWriter;
@@ -89,4 +89,4 @@ TEST(RoundedUp, LeavesWhatHasSoFewDigits) {
 }
 
 }  // namespace
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -18,7 +18,7 @@ inline constexpr app::Device kTable2 = {kPaperDevice, {0.003, 6.0, 0.0004}};
 
 /// As few trials as there may be and no trend: for tests that are about something else.
 inline app::Settings quick_settings() {
-  app::Settings settings;
+  app::Settings settings = emax::app::kDefaultSettings;
   settings.trials = 1000;
   settings.trend_count = 0;
   return settings;

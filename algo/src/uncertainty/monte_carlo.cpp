@@ -390,6 +390,7 @@ void MonteCarlo::finish() noexcept {
 
 MonteCarloResult MonteCarlo::result() const noexcept {
   MonteCarloResult result;
+  result.status = Status::kTooFewTrials;
   if (failed_) {
     result.status = Status::kInvalidArgument;
     result.failed_trial = trial_;
@@ -532,6 +533,7 @@ bool AdaptiveTrials::stable() const noexcept {
 
 AdaptiveResult AdaptiveTrials::result() const noexcept {
   AdaptiveResult result;
+  result.status = Status::kTooFewTrials;
   if (failed_) {
     result.status = Status::kInvalidArgument;
     result.failed_trial = failed_trial_;

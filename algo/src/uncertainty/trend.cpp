@@ -42,6 +42,7 @@ Trend linear_trend(Span<const double> time_s, Span<const double> energy) noexcep
   }
   const std::size_t points = time_s.size();
   if (points < 2) {
+    trend.status = Status::kTooFewPoints;
     return trend;
   }
   if (all_equal(time_s)) {

@@ -98,8 +98,8 @@ bool make_new(int file, const std::string& path) {
          sync_directory_of(path);
 }
 
-Problem refused(const std::string& path, const char* reason) {
-  return bad_input("--store: " + printable(path) + ": " + reason + "; " + kExpectation);
+desk::Problem refused(const std::string& path, const char* reason) {
+  return desk::bad_input("--store: " + desk::printable(path) + ": " + reason + "; " + kExpectation);
 }
 
 }  // namespace
@@ -122,13 +122,13 @@ FileBytes::~FileBytes() {
   }
 }
 
-Problem FileBytes::open(const std::string& path) {
+desk::Problem FileBytes::open(const std::string& path) {
   // O_NONBLOCK: a serial port without a peer would keep it waiting.
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
   if (file_ < 0) {
     return refused(path, std::strerror(errno));
   }
-  Problem problem = take_over(path);
+  desk::Problem problem = take_over(path);
   if (problem) {
     close(file_);
     file_ = -1;
@@ -136,23 +136,23 @@ Problem FileBytes::open(const std::string& path) {
   return problem;
 }
 
-Problem FileBytes::take_over(const std::string& path) {
+desk::Problem FileBytes::take_over(const std::string& path) {
   struct stat status = {};
   if (fstat(file_, &status) != 0) {
-    return fault("--store: " + printable(path) + ": " + std::strerror(errno));
+    return desk::fault("--store: " + desk::printable(path) + ": " + std::strerror(errno));
   }
   if (!S_ISREG(status.st_mode)) {
     return refused(path, "not a regular file");
   }
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    return bad_input("--store: " + printable(path) +
-                     ": in use by another program; end it first or take another file");
+    return desk::bad_input("--store: " + desk::printable(path) +
+                           ": in use by another program; end it first or take another file");
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (is_blank(file_, size)) {
     return make_new(file_, path)
-               ? Problem{}
-               : fault("--store: " + printable(path) + ": " + std::strerror(errno));
+               ? desk::Problem{}
+               : desk::fault("--store: " + desk::printable(path) + ": " + std::strerror(errno));
   }
   Page page = {};
   if (size != kFileBytes || !read_at(file_, 0, page) || page != title_page()) {

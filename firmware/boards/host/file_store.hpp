@@ -59,14 +59,14 @@ class FileBytes final : public StoreBytes {
   ///
   /// @returns What is wrong if it cannot be opened, is something else, or is in use. A file that is
   ///          something else is left as it is.
-  Problem open(const std::string& path);
+  desk::Problem open(const std::string& path);
 
   bool read(std::size_t offset, Span<std::uint8_t> bytes) noexcept override;
   bool write(std::size_t offset, Span<const std::uint8_t> bytes) noexcept override;
   bool sync() noexcept override;
 
  private:
-  Problem take_over(const std::string& path);
+  desk::Problem take_over(const std::string& path);
 
   int file_ = -1;
 };

@@ -12,13 +12,12 @@
 #include "emax/app/instrument/instrument.hpp"
 #include "emax/sim/sim_bench.hpp"
 
-#include "command_list.hpp"
 #include "console_port.hpp"
 #include "desk/cli/console.hpp"
-#include "desk/cli/options.hpp"
 #include "desk/cli/stop_request.hpp"
+#include "desk/scpi/command_list.hpp"
+#include "desk/scpi/scpi_options.hpp"
 #include "file_store.hpp"
-#include "scpi_options.hpp"
 #include "stdio_stream.hpp"
 #include "system_clock.hpp"
 #include "tcp_stream.hpp"
@@ -70,7 +69,7 @@ class Pacer final {
 // The instrument on its simulated bench.
 class ScpiJob final {
  public:
-  ScpiJob(const ScpiOptions& options, ConsolePort& port)
+  ScpiJob(const desk::ScpiOptions& options, ConsolePort& port)
       : port_(port),
         pacer_(options.pace, bench_),
         sweep_(options.report.sweep),
@@ -84,12 +83,12 @@ class ScpiJob final {
   ScpiJob(const ScpiJob&) = delete;
   ScpiJob& operator=(const ScpiJob&) = delete;
 
-  Problem run(const ScpiOptions& options) {
+  desk::Problem run(const desk::ScpiOptions& options) {
     if (bench_.configure(options.report.bench) != Status::kOk) {
-      return fault("the simulated bench refuses its settings");
+      return desk::fault("the simulated bench refuses its settings");
     }
     if (!options.store_path.empty()) {
-      if (Problem problem = file_bytes_.open(options.store_path)) {
+      if (desk::Problem problem = file_bytes_.open(options.store_path)) {
         return problem;
       }
     }
@@ -101,7 +100,7 @@ class ScpiJob final {
       instrument.lend_trial_store(Span<double>(trials_.get(), kStoredTrials));
     }
     instrument.start();
-    while (!stop_requested()) {
+    while (!desk::stop_requested()) {
       instrument.poll();
       if (!goes_on(instrument)) {
         instrument.abort();
@@ -131,12 +130,12 @@ class ScpiJob final {
     port_.wait(is_resting ? longest : Microseconds{0}, wishes);
   }
 
-  Problem stop(app::Instrument& instrument) {
+  desk::Problem stop(app::Instrument& instrument) {
     const bool was_sweeping = instrument.is_sweeping();
     instrument.abort();
     const bool is_at_zero = bench_.drive_is_at_zero();
     const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
-    return {ExitStatus::kStopped,
+    return {desk::ExitStatus::kStopped,
             "stopped" + std::string(was_sweeping ? " during the sweep" : "") + ", " + drive};
   }
 
@@ -152,39 +151,39 @@ class ScpiJob final {
   FileStore store_;
 };
 
-Problem run_on_tcp(const ScpiOptions& options) {
+desk::Problem run_on_tcp(const desk::ScpiOptions& options) {
   TcpStream port;
-  if (Problem problem = port.listen(options.port)) {
+  if (desk::Problem problem = port.listen(options.port)) {
     return problem;
   }
   std::fprintf(stderr, "emax: listening on 127.0.0.1:%u\n", unsigned{port.port()});
   return ScpiJob(options, port).run(options);
 }
 
-Problem run_on_stdio(const ScpiOptions& options) {
+desk::Problem run_on_stdio(const desk::ScpiOptions& options) {
   StdioStream port;
-  Problem problem = ScpiJob(options, port).run(options);
+  desk::Problem problem = ScpiJob(options, port).run(options);
   if (!problem && port.error() != 0) {
     // A reader that went away is no matter for words.
-    return fault(port.error() == EPIPE
-                     ? ""
-                     : std::string("standard output: ") + std::strerror(port.error()));
+    return desk::fault(port.error() == EPIPE
+                           ? ""
+                           : std::string("standard output: ") + std::strerror(port.error()));
   }
   return problem;
 }
 
 }  // namespace
 
-Problem run_scpi(Span<const std::string_view> arguments) {
-  ScpiOptions options;
-  if (Problem problem = parse_scpi_options(arguments, options)) {
+desk::Problem run_scpi(Span<const std::string_view> arguments) {
+  desk::ScpiOptions options;
+  if (desk::Problem problem = desk::parse_scpi_options(arguments, options)) {
     return problem;
   }
   if (options.prints_commands) {
-    FileSink sink(stdout);
+    desk::FileSink sink(stdout);
     app::TextWriter out(sink);
-    write_command_list(out);
-    return check_output(sink);
+    desk::write_command_list(out);
+    return desk::check_output(sink);
   }
   return options.listens ? run_on_tcp(options) : run_on_stdio(options);
 }
@@ -197,20 +196,7 @@ std::string help_on_scpi() {
 The instrument's console: SCPI commands, one message a line, executed in order;
 answers on standard output. No echo, no prompt. At the end of the input it
 finishes the queries that it was sent, then ends.
-
-  --tcp PORT             serve one client after the other on 127.0.0.1 instead;
-                         0 chooses a port; which it is, standard error says
-  --pace X               seconds of the simulated bench per second; 1 is real
-                         time (default as fast as it goes)
-  --store FILE           keeps what *SAV saves and the last identification;
-                         without it they are forgotten at the end
-  --commands             print the table of all commands, as Markdown
-)" + help_on_bench_options() +
-         R"(
-Help
-  --help                 this text
-  --version              the version of the program
-)";
+)" + desk::help_on_scpi_options();
 }
 
 }  // namespace emax::host

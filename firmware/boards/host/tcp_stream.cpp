@@ -43,7 +43,7 @@ TcpStream::~TcpStream() {
   }
 }
 
-Problem TcpStream::listen(std::uint16_t port) {
+desk::Problem TcpStream::listen(std::uint16_t port) {
   sockaddr_in address = {};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
@@ -55,8 +55,8 @@ Problem TcpStream::listen(std::uint16_t port) {
   if (listener_ < 0 || ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
       ::bind(listener_, generic, length) != 0 || ::listen(listener_, kBacklog) != 0 ||
       ::getsockname(listener_, generic, &length) != 0) {
-    return bad_input("--tcp: port " + std::to_string(port) + " of 127.0.0.1: " +
-                     std::strerror(errno) + "; expected a free port, or 0 for any");
+    return desk::bad_input("--tcp: port " + std::to_string(port) + " of 127.0.0.1: " +
+                           std::strerror(errno) + "; expected a free port, or 0 for any");
   }
   port_ = ntohs(address.sin_port);
   return {};

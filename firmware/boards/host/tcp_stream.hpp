@@ -24,7 +24,7 @@ class TcpStream final : public ConsolePort {
 
   /// @param[in] port 0 for one that the system chooses.
   /// @returns Why the port cannot be had, if so.
-  Problem listen(std::uint16_t port);
+  desk::Problem listen(std::uint16_t port);
   std::uint16_t port() const noexcept { return port_; }
 
   void wait(std::chrono::microseconds time, Wishes wishes) override;

@@ -6,7 +6,7 @@
 
 #include "emax/app/base/version.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -118,4 +118,4 @@ void write_certificate(const ProvenEnergy& proven, TextWriter& out) noexcept {
   out.text("]\n}\n");
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -6,7 +6,7 @@
 #include "emax/energy/switching_signal.hpp"
 #include "emax/model/modal_model.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// A bound with the signal that comes closest to it.
 struct ProvenEnergy {
@@ -25,4 +25,4 @@ struct ProvenEnergy {
 /// a kind 3 of any sign.
 void write_certificate(const ProvenEnergy& proven, app::TextWriter& out) noexcept;
 
-}  // namespace emax::host
+}  // namespace emax::desk

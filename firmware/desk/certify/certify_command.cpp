@@ -22,14 +22,16 @@
 #include "desk/certify/certificate_file.hpp"
 #include "desk/cli/console.hpp"
 #include "desk/cli/console_progress.hpp"
-#include "desk/cli/nearest.hpp"
+#include "desk/cli/option_parser.hpp"
+#include "desk/cli/option_table.hpp"
 #include "desk/cli/options.hpp"
 #include "desk/cli/stop_request.hpp"
+#include "desk/cli/value_text.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/rounding.hpp"
 #include "desk/files/text_file.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -49,94 +51,55 @@ constexpr std::size_t kHash = std::size_t{1} << 19;
 constexpr std::size_t kLeafNumbers = 6'000'000;
 constexpr double kMaxEffort_s = 1e7;
 
-// Options that mean here what they mean for a report.
-constexpr std::string_view kSharedOptions[] = {"points", "model", "order", "cutoff",
-                                               "gain",   "time",  "limit", "json"};
-
 struct CertifyOptions {
   ReportOptions report;
   double effort_s = 60.0;
   std::string out_path;  // Empty for no file.
 };
 
-struct Argument {
-  std::string_view name;
-  std::string_view value;
-  bool has_value = false;
-};
-
-bool is_shared(std::string_view name) {
-  return std::find(std::begin(kSharedOptions), std::end(kSharedOptions), name) !=
-         std::end(kSharedOptions);
-}
-
-Problem wrong_option(std::string_view name) {
-  std::vector<std::string_view> names(std::begin(kSharedOptions), std::end(kSharedOptions));
-  names.insert(names.end(), {"effort", "out", "help", "version"});
-  const std::string_view meant =
-      nearest(name, Span<const std::string_view>(names.data(), names.size()));
-  return bad_input("--" + printable(name) + ": no option of emax certify; did you mean --" +
-                   std::string(meant) + "?");
-}
-
-Problem take_effort(std::string_view text, double& effort_s) {
+bool take_effort(std::string_view text, double& effort_s) {
   const ParsedNumber number = parse_decimal(Span<const char>(text.data(), text.size()));
-  if (number.status != Status::kOk || number.length != text.size() || !(number.value > 0.0) ||
-      number.value > kMaxEffort_s) {
-    return bad_input("--effort: \"" + printable(text) +
-                     "\" given; expected a number of seconds above 0");
-  }
   effort_s = number.value;
-  return {};
+  return number.status == Status::kOk && number.length == text.size() && number.value > 0.0 &&
+         number.value <= kMaxEffort_s;
 }
 
-// Options of this command are taken here, the rest by the parser of a report's options.
-Problem parse_options(Span<const std::string_view> arguments, CertifyOptions& options) {
-  std::vector<std::string_view> shared;
-  bool has_effort = false;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view argument = arguments[i];
-    const std::size_t equals = argument.find('=');
-    const bool is_option = argument.size() > 2 && argument.substr(0, 2) == "--";
-    const std::string_view name =
-        is_option ? argument.substr(2, equals == std::string_view::npos ? equals : equals - 2)
-                  : std::string_view{};
-    if (name != "effort" && name != "out") {
-      if (is_option && !is_shared(name)) {
-        return wrong_option(name);
-      }
-      shared.push_back(argument);
-      continue;
-    }
-    const std::string dashed = "--" + std::string(name);
-    if (name == "effort" ? has_effort : !options.out_path.empty()) {
-      return bad_input(dashed + ": given twice; expected once");
-    }
-    const bool follows = equals == std::string_view::npos;
-    const bool missing =
-        follows && (i + 1 == arguments.size() || arguments[i + 1].substr(0, 2) == "--");
-    const std::string_view value =
-        missing ? std::string_view{} : (follows ? arguments[++i] : argument.substr(equals + 1));
-    if (value.empty()) {
-      return bad_input(dashed + ": no value; expected " +
-                       (name == "effort" ? "a number of seconds above 0" : "the name of a file"));
-    }
-    if (name == "out") {
-      options.out_path = std::string(value);
-      continue;
-    }
-    has_effort = true;
-    if (Problem problem = take_effort(value, options.effort_s)) {
-      return problem;
-    }
+// The first ones mean here what they mean for a report.
+Syntax syntax_of(CertifyOptions& options) {
+  ReportOptions& report = options.report;
+  Syntax syntax;
+  for (const char* name : {"points", "model", "order", "cutoff", "gain", "time", "limit"}) {
+    syntax.options.push_back(report_option(report, name));
   }
-  if (std::none_of(shared.begin(), shared.end(), [](std::string_view argument) {
-        return argument.substr(0, 7) == "--model" || argument.substr(0, 8) == "--points";
-      })) {
+  syntax.options[2].help = "order, 2 to 15";
+  syntax.options.push_back(report_option(report, "json",
+                                         "{E,bound,gap,cells,multipliers,nodes,seconds} on\n"
+                                         "standard output instead of text"));
+  const std::string heading = syntax.options.back().heading;
+  syntax.options.push_back({"effort", heading, "SECONDS", "60", "a number of seconds above 0",
+                            "how long to work on the bound", [&options](std::string_view text) {
+                              return take_effort(text, options.effort_s);
+                            }});
+  syntax.options.push_back(
+      {"out", heading, "FILE", "", "the name of a file",
+       "the certificate, JSON, which\n"
+       "host_tests/reference/check_certificate.py verifies",
+       [&options](std::string_view text) { return take_text(text, options.out_path); }});
+  syntax.unknown = "no option of emax certify";
+  syntax.expected = "options, such as --points FILE";
+  return syntax;
+}
+
+Problem parse(Span<const std::string_view> arguments, CertifyOptions& options) {
+  const Syntax syntax = syntax_of(options);
+  std::vector<Given> all;
+  if (Problem problem = parse_options(arguments, syntax, all)) {
+    return problem;
+  }
+  if (options.report.measures()) {
     return bad_input("certify: no device; expected --model S,f0,beta or --points FILE");
   }
-  return parse_report_options(Span<const std::string_view>(shared.data(), shared.size()),
-                              options.report);
+  return check_report_options(all, options.report);
 }
 
 // A file that appears under its name when it is complete.
@@ -389,7 +352,7 @@ void write_text(const Result& result, app::TextWriter& out) {
 Problem run_certify(Span<const std::string_view> arguments) {
   const Clock::time_point start = Clock::now();
   CertifyOptions options;
-  if (Problem problem = parse_options(arguments, options)) {
+  if (Problem problem = parse(arguments, options)) {
     return problem;
   }
   // Only the estimate's energy is wanted.
@@ -425,6 +388,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
 }
 
 std::string help_on_certify() {
+  CertifyOptions options;
   return R"(usage: emax certify --model S,f0,beta [options]
        emax certify --points FILE [options]
 
@@ -432,22 +396,7 @@ Proves how far the maximum energy of emax report can be from the truth: a bound
 of the integral-square error that no signal within +-a on [0, T] exceeds,
 whatever its shape. The longer it runs the tighter the bound; Ctrl-C ends it
 early with what is proven by then.
-
-  --model S,f0,beta      the device; or
-  --points FILE          measured points, as for emax report
-  --order L              order of the reference filter, 2 to 15 (default 10)
-  --cutoff HZ            its cutoff frequency (-3 dB) in Hz (default 1000)
-  --gain auto|NUMBER     its gain in V/(m/s^2); auto is S (default auto)
-  --time SECONDS         length T of the signal in s (default 0.002)
-  --limit auto|NUMBER    limit a of the signal in m/s^2; auto is the number of S
-  --effort SECONDS       how long to work on the bound (default 60)
-  --out FILE             the certificate, JSON, which
-                         host_tests/reference/check_certificate.py verifies
-  --json                 {E,bound,gap,cells,multipliers,nodes,seconds} on
-                         standard output instead of text
-  --help                 this text
-  --version              the version of the program
-)";
+)" + help_on(syntax_of(options).options);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -8,7 +8,7 @@
 
 #include "desk/cli/stop_request.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -102,4 +102,4 @@ Problem check_output(FileSink& output) {
                "; not all of the output has been written");
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

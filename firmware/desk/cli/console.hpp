@@ -10,7 +10,7 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Text into a file of the C library. Errors are kept and asked for afterwards.
 class FileSink final : public app::TextSink {
@@ -57,4 +57,4 @@ int finish(const Problem& problem);
 /// Checks what became of text for standard output. A reader that went away is no matter for words.
 Problem check_output(FileSink& output);
 
-}  // namespace emax::host
+}  // namespace emax::desk

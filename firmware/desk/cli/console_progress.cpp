@@ -6,7 +6,7 @@
 #include <cstring>
 #include <unistd.h>
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -46,4 +46,4 @@ void ConsoleProgress::erase() noexcept {
   shown_ = 0;
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

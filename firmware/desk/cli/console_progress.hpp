@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstddef>
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Shows stage, percent and elapsed time on standard error, in one line that is rewritten: only on
 /// a terminal, and only once the work has lasted for half a second. The line is erased at the end.
@@ -30,4 +30,4 @@ class ConsoleProgress final {
   bool is_terminal_;
 };
 
-}  // namespace emax::host
+}  // namespace emax::desk

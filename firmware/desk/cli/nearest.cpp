@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::string_view nearest(std::string_view text, Span<const std::string_view> nam
   return best;
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

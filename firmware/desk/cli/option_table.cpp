@@ -1,95 +1,31 @@
-// The options of `emax report`, and how the value of each is read.
+// The options of `emax report`: settings by their rows, here where the device comes from, and what
+// is printed.
 #include "desk/cli/option_table.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <limits>
 #include <string>
+#include <string_view>
 
-#include "emax/base/decimal.hpp"
-#include "emax/base/elementary.hpp"
+#include "desk/cli/setting_options.hpp"
+#include "desk/cli/value_text.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
-// A list longer than any that is expected.
-constexpr std::size_t kMaxList = app::kMaxTrendPoints + 1;
+constexpr double kMaxReferencePercent = 50.0;
+constexpr double kMaxFaultTime_s = 1e6;
+constexpr double kDefaultFaultTime_s = 3.0;
+constexpr double kMaxNoise_v = 1.0;
 
-struct Numbers {
-  double values[kMaxList] = {};
-  std::size_t count = 0;
-  bool valid = false;
-};
+constexpr const char* kExpectedFault =
+    "none, lost-block, late-block, stuck-channel, saturation, unplugged-reference, "
+    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS";
 
-std::string_view without_spaces(std::string_view text) noexcept {
-  while (!text.empty() && text.front() == ' ') {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && text.back() == ' ') {
-    text.remove_suffix(1);
-  }
-  return text;
-}
-
-bool take_number(std::string_view text, double& value) noexcept {
-  text = without_spaces(text);
-  const ParsedNumber number = parse_decimal(Span<const char>(text.data(), text.size()));
-  if (number.status != Status::kOk || number.length != text.size() || !is_finite(number.value)) {
-    return false;
-  }
-  value = number.value;
-  return true;
-}
-
-template <typename Integer>
-bool to_integer(double number, Integer& value) noexcept {
-  using Limits = std::numeric_limits<Integer>;
-  if (!(number >= static_cast<double>(Limits::min())) ||
-      !(number <= static_cast<double>(Limits::max())) || number != emax::floor(number)) {
-    return false;
-  }
-  value = static_cast<Integer>(number);
-  return true;
-}
-
-template <typename Integer>
-bool take_integer(std::string_view text, Integer& value) noexcept {
-  double number = 0.0;
-  return take_number(text, number) && to_integer(number, value);
-}
-
-Numbers take_list(std::string_view text) noexcept {
-  Numbers list;
-  for (;;) {
-    const std::string_view item = text.substr(0, text.find(','));
-    if (list.count == kMaxList || !take_number(item, list.values[list.count])) {
-      return list;
-    }
-    ++list.count;
-    if (item.size() == text.size()) {
-      list.valid = true;
-      return list;
-    }
-    text.remove_prefix(item.size() + 1);
-  }
-}
-
-template <typename Choice>
-bool take_choice(std::string_view text, std::string_view first, Choice first_value,
-                 std::string_view second, Choice second_value, Choice& value) noexcept {
-  if (text != first && text != second) {
-    return false;
-  }
-  value = text == first ? first_value : second_value;
-  return true;
-}
-
-bool take_text(std::string_view text, std::string& value) {
-  value = text;
-  return !text.empty();
+constexpr bool is_within(double value, double low, double high) noexcept {
+  return value >= low && value <= high;
 }
 
 bool take_model(std::string_view text, ReportOptions& options) {
@@ -103,18 +39,9 @@ bool take_model(std::string_view text, ReportOptions& options) {
   return true;
 }
 
-bool take_gain(std::string_view text, ReportOptions& options) noexcept {
-  if (take_choice(text, "auto", app::GainMode::kAuto, "track", app::GainMode::kTrack,
-                  options.settings.gain_mode)) {
-    return true;
-  }
-  options.settings.gain_mode = app::GainMode::kFixed;
-  return take_number(text, options.settings.gain);
-}
-
-bool take_limit(std::string_view text, ReportOptions& options) noexcept {
-  options.settings.limit_is_auto = text == "auto";
-  return options.settings.limit_is_auto || take_number(text, options.settings.limit_mps2);
+bool take_reference(std::string_view text, ReportOptions& options) noexcept {
+  double& percent = options.reference_uncertainty_percent;
+  return take_number(text, percent) && is_within(percent, 0.0, kMaxReferencePercent);
 }
 
 bool take_seed(std::string_view text, ReportOptions& options) noexcept {
@@ -145,23 +72,11 @@ bool take_trend(std::string_view text, ReportOptions& options) noexcept {
   return true;
 }
 
-constexpr double kMaxReferencePercent = 50.0;
-constexpr double kMaxFaultTime_s = 1e6;
-constexpr double kDefaultFaultTime_s = 3.0;
-
-constexpr const char* kExpectedFault =
-    "none, lost-block, late-block, stuck-channel, saturation, unplugged-reference, "
-    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS";
-
 bool take_bench_seed(std::string_view text, ReportOptions& options) noexcept {
   std::uint32_t seed = 0;
   const bool valid = take_integer(text, seed);
   options.bench.seed = seed;
   return valid;
-}
-
-constexpr bool is_within(double value, double low, double high) noexcept {
-  return value >= low && value <= high;
 }
 
 bool take_bench_truth(std::string_view text, ReportOptions& options) noexcept {
@@ -174,6 +89,11 @@ bool take_bench_truth(std::string_view text, ReportOptions& options) noexcept {
   options.bench.device = {values[0], values[1], values[2]};
   options.sweep.expected_sensitivity = values[0];
   return true;
+}
+
+bool take_bench_noise(std::string_view text, ReportOptions& options) noexcept {
+  return take_number(text, options.bench.noise_v) &&
+         is_within(options.bench.noise_v, 0.0, kMaxNoise_v);
 }
 
 bool take_bench_fault(std::string_view text, ReportOptions& options) {
@@ -189,229 +109,176 @@ bool take_bench_fault(std::string_view text, ReportOptions& options) {
   return parsed.known;
 }
 
-constexpr Option kOptions[] = {
-    {"points", "The device", "FILE", nullptr, "the name of a CSV file, or -",
-     "measured points, 3 to 64 lines of CSV by frequency:\n"
-     "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
-     "amplitude in V/(m/s^2), a lag negative, expanded\n"
-     "uncertainties (k = 2), # starts a comment;\n"
-     "- reads standard input",
-     [](std::string_view value, ReportOptions& options) {
-       return take_text(value, options.points_path);
-     }},
-    {"model", nullptr, "S,f0,beta[,uS,uf0,ubeta]", nullptr,
-     "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",
-     "known parameters: sensitivity in V/(m/s^2), natural\n"
-     "frequency in Hz, damping (0.0001 to below 1); then\n"
-     "their standard uncertainties, without which there is\n"
-     "no Monte Carlo part",
-     take_model},
-    {"reference-uncertainty", nullptr, "PERCENT", "0", "a number of percent from 0 to 50",
-     "of the reference sensor, expanded (k = 2): common to\n"
-     "all points; with --points it is taken to be within\n"
-     "the uncertainty of each amplitude. 0.5 on the bench",
-     [](std::string_view value, ReportOptions& options) {
-       double& percent = options.reference_uncertainty_percent;
-       return take_number(value, percent) && percent >= 0.0 && percent <= kMaxReferencePercent;
-     }},
-    {"bench-seed", "The simulated bench, which measures without --points and --model", "N", "1",
-     "a whole number from 0 to 4294967295", "of its noise and of what its certificates leave open",
-     take_bench_seed, true},
-    {"bench-truth", nullptr, "S,f0,beta", "1.037,4073,0.3182",
-     "three numbers: S from 0.001 to 1000 V/(m/s^2), f0 from 1 to 1e6 Hz, beta from 0.001 to below "
-     "1",
-     "the device that is mounted; S is also what its data\n"
-     "sheet says, within a factor of 3",
-     take_bench_truth, true},
-    {"bench-noise", nullptr, "VOLTS", "0.005", "a number of V from 0 to 1",
-     "noise of each channel, rms, in V",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.bench.noise_v) && options.bench.noise_v >= 0.0 &&
-              options.bench.noise_v <= 1.0;
-     },
-     true},
-    {"bench-fault", nullptr, "NAME[@SECONDS]", "none", kExpectedFault,
-     "what goes wrong, and when (default 3 s after the\n"
-     "start; the sweep takes 6): lost-block, late-block,\n"
-     "stuck-channel, saturation, unplugged-reference,\n"
-     "unplugged-device, swapped-channels,\n"
-     "inverted-polarity, dc-drift",
-     take_bench_fault, true},
-    {"level", nullptr, "MPS2", "1", "a number of m/s^2 above 0",
-     "peak acceleration to reach, in m/s^2",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.level_mps2);
-     },
-     true},
-    {"acceleration-limit", nullptr, "MPS2", "20", "a number of m/s^2 above 0",
-     "peak acceleration never to exceed, in m/s^2",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.limit_mps2);
-     },
-     true},
-    {"drive-limit", nullptr, "VOLTS", "5", "a number of V above 0",
-     "peak drive never to exceed, in V, at most 10",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.drive_limit_v);
-     },
-     true},
-    {"slew", nullptr, "V/S", "100000", "a number of V/s above 0",
-     "slope of the drive never to exceed, in V/s",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.slew_v_per_s);
-     },
-     true},
-    {"settle", nullptr, "SECONDS", "0.01", "a number of seconds from 0 to 10",
-     "rest after each ramp, in s; three periods at least",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.sweep.settle_s);
-     },
-     true},
-    {"cycles", nullptr, "N", "3", "a whole number from 1 to 1000",
-     "least number of periods in each of five repeats",
-     [](std::string_view value, ReportOptions& options) {
-       return take_integer(value, options.sweep.cycles);
-     },
-     true},
-    {"order", "The reference filter, a Butterworth low-pass", "L", "10",
-     "a whole number from 1 to 15", "order, 1 to 15",
-     [](std::string_view value, ReportOptions& options) {
-       return take_integer(value, options.settings.filter_order);
-     }},
-    {"cutoff", nullptr, "HZ", "1000", "a number of Hz above 0", "cutoff frequency (-3 dB) in Hz",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.settings.cutoff_hz);
-     }},
-    {"gain", nullptr, "auto|NUMBER|track", "auto", "auto, track or a number of V/(m/s^2)",
-     "gain in V/(m/s^2): auto is the estimate of S,\n"
-     "track the S of each Monte Carlo trial",
-     take_gain},
-    {"time", "The signal and its energy", "SECONDS", "0.002", "a number of seconds above 0",
-     "length T of the signal in s",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.settings.duration_s);
-     }},
-    {"limit", nullptr, "auto|NUMBER", "auto", "auto or a number of m/s^2 above 0",
-     "limit a of the signal in m/s^2, which stays within\n"
-     "+-a; auto is the number of S, as in the paper",
-     take_limit},
-    {"criterion", nullptr, "ise|difference", "ise", "ise or difference",
-     "ise: energy of the error, y = ya - yf;\n"
-     "difference: energy of ya minus that of yf",
-     [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "ise", Criterion::kIntegralSquareError, "difference",
-                          Criterion::kEnergyDifference, options.settings.criterion);
-     }},
-    {"method", nullptr, "best|paper", "best", "best or paper",
-     "best: many starts; paper: the fixed point from the\n"
-     "first column of Phi, as published",
-     [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "best", Method::kBest, "paper", Method::kPaper,
-                          options.settings.method);
-     }},
-    {"step", nullptr, "SECONDS", "2e-6", "a number of seconds above 0",
-     "width of a grid cell in s; for --method paper",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.settings.step_s);
-     }},
-    {"iterations", nullptr, "J", "30", "a whole number from 1 to 1000",
-     "iterations at most; for --method paper",
-     [](std::string_view value, ReportOptions& options) {
-       return take_integer(value, options.settings.iterations);
-     }},
-    {"trials", "Monte Carlo", "M", "200000", "a whole number from 1000 to 1000000000",
-     "number of trials, 1000 to 1e9; a warning below\n"
-     "1e4/(1 - p)",
-     [](std::string_view value, ReportOptions& options) {
-       return take_integer(value, options.settings.trials);
-     }},
-    {"adaptive", nullptr, nullptr, nullptr, nullptr,
-     "the number of trials by JCGM 101 7.9; --trials is\n"
-     "then unused",
-     [](std::string_view, ReportOptions& options) { return options.settings.adaptive = true; }},
-    {"probability", nullptr, "P", "0.95", "a number between 0 and 1",
-     "coverage probability p of the intervals",
-     [](std::string_view value, ReportOptions& options) {
-       return take_number(value, options.settings.probability);
-     }},
-    {"distribution", nullptr, "box|normal", "box", "box or normal",
-     "box: uniform within +-u of each parameter; normal:\n"
-     "with the covariance of the fit",
-     [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "box", Distribution::kBox, "normal", Distribution::kNormal,
-                          options.settings.distribution);
-     }},
-    {"birge", nullptr, nullptr, nullptr, nullptr,
-     "the trials' uncertainties times the fit's Birge\n"
-     "ratio, if that is above 1",
-     [](std::string_view, ReportOptions& options) { return options.settings.birge = true; }},
-    {"seed", nullptr, "A,B,C,D", "123456789,345678901,567890123,789012345",
-     "four whole numbers above 0, or three with --generator 1982",
-     "start of the random numbers; three numbers will do\n"
-     "with --generator 1982",
-     take_seed},
-    {"generator", nullptr, "2006|1982", "2006", "2006 or 1982",
-     "random numbers of Wichmann and Hill",
-     [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "2006", Generator::k2006, "1982", Generator::k1982,
-                          options.settings.generator);
-     }},
-    {"trend", "The energy over the length of the signal", "T1,T2,...|none",
-     "0.002,0.004,0.006,0.008,0.010", "none or 2 to 16 numbers of seconds",
-     "2 to 16 lengths in s, with the straight line through\n"
-     "their energies",
-     take_trend},
-    {"device", "Labels, in UTF-8; no result depends on them", "TEXT", nullptr,
-     "the name of the device", "name of the device, for titles too",
-     [](std::string_view value, ReportOptions& options) {
-       return take_text(value, options.device_name);
-     }},
-    {"serial", nullptr, "TEXT", nullptr, "a serial number", "its serial number",
-     [](std::string_view value, ReportOptions& options) {
-       return take_text(value, options.serial);
-     }},
-    {"operator", nullptr, "TEXT", nullptr, "a name", "who measures",
-     [](std::string_view value, ReportOptions& options) {
-       return take_text(value, options.operated_by);
-     }},
-    {"date", nullptr, "TEXT", nullptr, "a date", "when, in any form",
-     [](std::string_view value, ReportOptions& options) { return take_text(value, options.date); }},
-    {"note", nullptr, "TEXT", nullptr, "a note",
-     "anything else; the text report shows the first 240\n"
-     "characters of each label, the page and results.json\n"
-     "all of it",
-     [](std::string_view value, ReportOptions& options) { return take_text(value, options.note); }},
-    {"units", "Output", "si|g", "si", "si or g",
-     "g: accelerations also in g, sensitivities in V/g, in\n"
-     "report and page (standard gravity, 9.80665 m/s^2)",
-     [](std::string_view value, ReportOptions& options) {
-       return take_choice(value, "si", false, "g", true, options.in_g);
-     }},
-    {"json", nullptr, nullptr, nullptr, nullptr, "results.json on standard output instead of text",
-     [](std::string_view, ReportOptions& options) { return options.json = true; }},
-    {"out", nullptr, "DIR", nullptr, "the name of a directory",
-     "files as well: report.txt, report.html (one page,\n"
-     "also to print), results.json, frequency_response.csv\n"
-     "(unless --model; --points can read it, with the\n"
-     "report's expanded common part as\n"
-     "--reference-uncertainty), impulse_response.csv,\n"
-     "signal.csv, trend.csv, histogram.csv; a picture (SVG)\n"
-     "of each by gnuplot and its script, pictures.gp; DIR\n"
-     "is made if missing, and files of an earlier run are\n"
-     "replaced",
-     [](std::string_view value, ReportOptions& options) {
-       return take_text(value, options.out_directory);
-     }},
+using Take = bool (*)(std::string_view text, ReportOptions& options);
+
+// Options that are written down one below the other, with what they write to.
+class Builder {
+ public:
+  Builder(ReportOptions& target, const char* heading, bool is_for_bench = false)
+      : target_(target), heading_(heading), is_for_bench_(is_for_bench) {}
+
+  Builder& add(const char* name, const char* value, const char* by_default, const char* expectation,
+               const char* help, Take take) {
+    ReportOptions& target = target_;
+    options_.push_back({name, heading_, value, by_default, expectation, help,
+                        [take, &target](std::string_view text) { return take(text, target); },
+                        is_for_bench_});
+    return *this;
+  }
+  Builder& add_text(const char* name, const char* value, const char* expectation, const char* help,
+                    std::string& text) {
+    options_.push_back({name, heading_, value, "", expectation, help,
+                        [&text](std::string_view given) { return take_text(given, text); },
+                        is_for_bench_});
+    return *this;
+  }
+  Builder& add_switch(const char* name, const char* help, bool& flag) {
+    options_.push_back({name, heading_, "", "", "", help,
+                        [&flag](std::string_view) { return flag = true; }, is_for_bench_});
+    return *this;
+  }
+  const std::vector<Option>& options() const noexcept { return options_; }
+
+ private:
+  ReportOptions& target_;
+  const char* heading_;
+  bool is_for_bench_;
+  std::vector<Option> options_;
 };
+
+std::vector<Option> device_options(ReportOptions& options) {
+  Builder builder(options, "The device");
+  builder
+      .add_text("points", "FILE", "the name of a CSV file, or -",
+                "measured points, 3 to 64 lines of CSV by frequency:\n"
+                "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
+                "amplitude in V/(m/s^2), a lag negative, expanded\n"
+                "uncertainties (k = 2), # starts a comment;\n"
+                "- reads standard input",
+                options.points_path)
+      .add("model", "S,f0,beta[,uS,uf0,ubeta]", "",
+           "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",
+           "known parameters: sensitivity in V/(m/s^2), natural\n"
+           "frequency in Hz, damping (0.0001 to below 1); then\n"
+           "their standard uncertainties, without which there is\n"
+           "no Monte Carlo part",
+           take_model)
+      .add("reference-uncertainty", "PERCENT", "0", "a number of percent from 0 to 50",
+           "of the reference sensor, expanded (k = 2): common to\n"
+           "all points; with --points it is taken to be within\n"
+           "the uncertainty of each amplitude. 0.5 on the bench",
+           take_reference);
+  return builder.options();
+}
+
+std::vector<Option> own_bench_options(ReportOptions& options) {
+  Builder builder(options, kBenchHeading, true);
+  builder
+      .add("bench-seed", "N", "1", "a whole number from 0 to 4294967295",
+           "of its noise and of what its certificates leave open", take_bench_seed)
+      .add("bench-truth", "S,f0,beta", "1.037,4073,0.3182",
+           "three numbers: S from 0.001 to 1000 V/(m/s^2), f0 from 1 to 1e6 Hz, beta from 0.001 to "
+           "below 1",
+           "the device that is mounted; S is also what its data\n"
+           "sheet says, within a factor of 3",
+           take_bench_truth)
+      .add("bench-noise", "VOLTS", "0.005", "a number of V from 0 to 1",
+           "noise of each channel, rms, in V", take_bench_noise)
+      .add("bench-fault", "NAME[@SECONDS]", "none", kExpectedFault,
+           "what goes wrong, and when (default 3 s after the\n"
+           "start; the sweep takes 6): lost-block, late-block,\n"
+           "stuck-channel, saturation, unplugged-reference,\n"
+           "unplugged-device, swapped-channels,\n"
+           "inverted-polarity, dc-drift",
+           take_bench_fault);
+  return builder.options();
+}
+
+// Those of the rows, with the two that are lists.
+std::vector<Option> evaluation_options(ReportOptions& options) {
+  std::vector<Option> all = setting_options(options.settings);
+  for (Option& option : all) {
+    if (option.name == "seed") {
+      option.take = [&options](std::string_view text) { return take_seed(text, options); };
+    } else if (option.name == "trend") {
+      option.take = [&options](std::string_view text) { return take_trend(text, options); };
+    }
+  }
+  return all;
+}
+
+std::vector<Option> label_options(ReportOptions& options) {
+  Builder builder(options, "Labels, in UTF-8; no result depends on them");
+  builder
+      .add_text("device", "TEXT", "the name of the device", "name of the device, for titles too",
+                options.device_name)
+      .add_text("serial", "TEXT", "a serial number", "its serial number", options.serial)
+      .add_text("operator", "TEXT", "a name", "who measures", options.operated_by)
+      .add_text("date", "TEXT", "a date", "when, in any form", options.date)
+      .add_text("note", "TEXT", "a note",
+                "anything else; the text report shows the first 240\n"
+                "characters of each label, the page and results.json\n"
+                "all of it",
+                options.note);
+  return builder.options();
+}
+
+bool take_units(std::string_view text, ReportOptions& options) noexcept {
+  options.in_g = text == "g";
+  return options.in_g || text == "si";
+}
+
+std::vector<Option> output_options(ReportOptions& options) {
+  Builder builder(options, "Output");
+  builder
+      .add("units", "si|g", "si", "si or g",
+           "g: accelerations also in g, sensitivities in V/g, in\n"
+           "report and page (standard gravity, 9.80665 m/s^2)",
+           take_units)
+      .add_switch("json", "results.json on standard output instead of text", options.json)
+      .add_text("out", "DIR", "the name of a directory",
+                "files as well: report.txt, report.html (one page,\n"
+                "also to print), results.json, frequency_response.csv\n"
+                "(unless --model; --points can read it, with the\n"
+                "report's expanded common part as\n"
+                "--reference-uncertainty), impulse_response.csv,\n"
+                "signal.csv, trend.csv, histogram.csv; a picture (SVG)\n"
+                "of each by gnuplot and its script, pictures.gp; DIR\n"
+                "is made if missing, and files of an earlier run are\n"
+                "replaced",
+                options.out_directory);
+  return builder.options();
+}
+
+void append(std::vector<Option>& all, const std::vector<Option>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
 
 }  // namespace
 
-Span<const Option> option_table() noexcept { return kOptions; }
-
-const Option* find_option(std::string_view name) noexcept {
-  const auto* found = std::find_if(std::begin(kOptions), std::end(kOptions),
-                                   [name](const Option& option) { return option.name == name; });
-  return found == std::end(kOptions) ? nullptr : found;
+std::vector<Option> report_options(ReportOptions& options) {
+  std::vector<Option> all = device_options(options);
+  append(all, own_bench_options(options));
+  append(all, sweep_setting_options(options.sweep));
+  append(all, evaluation_options(options));
+  append(all, label_options(options));
+  append(all, output_options(options));
+  return all;
 }
 
-}  // namespace emax::host
+std::vector<Option> bench_options(ReportOptions& options) {
+  std::vector<Option> all = {report_option(options, "reference-uncertainty")};
+  append(all, own_bench_options(options));
+  append(all, sweep_setting_options(options.sweep));
+  all[0].heading = kBenchHeading;
+  return all;
+}
+
+Option report_option(ReportOptions& options, const char* name, const char* help) {
+  const std::vector<Option> all = report_options(options);
+  Option option = *find_option(all, name);
+  option.help = help != nullptr ? help : option.help;
+  return option;
+}
+
+}  // namespace emax::desk

@@ -1,35 +1,21 @@
-// The options of `emax report`, one entry each: parser and help both read this table.
+// The options of `emax report`, some of which other commands have, too.
 #pragma once
 
-#include <string_view>
+#include <vector>
 
-#include "emax/base/span.hpp"
-
+#include "desk/cli/option.hpp"
 #include "desk/cli/options.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
-struct Option {
-  std::string_view name;
-  const char* heading;      ///< Of the group that starts here; null inside a group.
-  const char* value;        ///< What stands for the value in the help; null for a switch.
-  const char* by_default;   ///< Null if there is no default value.
-  const char* expectation;  ///< What a value must look like.
-  const char* help;         ///< Lines of at most 55 characters.
-  /// Takes the value over, or returns false.
-  bool (*take)(std::string_view value, ReportOptions& options);
-  bool is_for_bench = false;  ///< Excludes --points and --model.
-};
+/// @returns All options that take part in a report, in the order of the help. They write to
+/// `options`, which has to outlive them.
+std::vector<Option> report_options(ReportOptions& options);
 
-/// @returns All options that take part in a report, in the order of the help.
-Span<const Option> option_table() noexcept;
+/// @returns Those that describe the simulated bench and its sweep.
+std::vector<Option> bench_options(ReportOptions& options);
 
-/// @returns Whether `emax scpi` has it, too: what describes the bench and its sweep.
-inline bool is_for_console(const Option& option) noexcept {
-  return option.is_for_bench || option.name == "reference-uncertainty";
-}
+/// @returns The option of that name, with another text in the help if there is one.
+Option report_option(ReportOptions& options, const char* name, const char* help = nullptr);
 
-/// @returns The option of that name (without dashes), null if there is none.
-const Option* find_option(std::string_view name) noexcept;
-
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/report/report_context.hpp"
@@ -12,14 +13,15 @@
 #include "emax/base/span.hpp"
 #include "emax/sim/sim_bench.hpp"
 
+#include "desk/cli/option.hpp"
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
 /// neither, from a measurement on the simulated bench.
 struct ReportOptions {
-  app::Settings settings;
+  app::Settings settings = app::kDefaultSettings;
   std::string points_path;  ///< "-" for standard input; empty for none.
   std::string model_text;   ///< As it was given; empty for none.
   app::Device device = {};  ///< What `model_text` says.
@@ -27,7 +29,7 @@ struct ReportOptions {
   /// Expanded. Without the option it is what `sweep` says on the bench, and 0 else.
   double reference_uncertainty_percent = 0.0;
   sim::BenchSettings bench;
-  app::SweepSettings sweep;
+  app::SweepSettings sweep = app::default_sweep_settings();
   std::string device_name;  ///< This and the next four are labels, empty if not given.
   std::string serial;
   std::string operated_by;
@@ -47,10 +49,14 @@ struct ReportOptions {
 /// @param[out] options Of no use if there is a problem.
 Problem parse_report_options(Span<const std::string_view> arguments, ReportOptions& options);
 
+/// Checks options that were taken, those of other commands too: that they go together, and all
+/// settings.
+///
+/// @param[in]     all     What was given.
+/// @param[in,out] options What is said once of bench and sweep is then known to both.
+Problem check_report_options(const std::vector<Given>& all, ReportOptions& options);
+
 /// @returns The help of all options, in lines of at most 80 characters.
 std::string help_on_report_options();
 
-/// @returns The same for those of the simulated bench and its sweep alone.
-std::string help_on_bench_options();
-
-}  // namespace emax::host
+}  // namespace emax::desk

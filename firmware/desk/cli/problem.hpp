@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace emax::host {
+namespace emax::desk {
 
 enum class ExitStatus : int {
   kDone = 0,
@@ -25,4 +25,4 @@ inline Problem bad_input(std::string line) { return {ExitStatus::kBadInput, std:
 inline Problem fault(std::string line) { return {ExitStatus::kFault, std::move(line)}; }
 inline Problem stopped() { return {ExitStatus::kStopped, "stopped"}; }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -3,7 +3,7 @@
 
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction() is not in <csignal>.
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -32,4 +32,4 @@ void watch_for_stop_requests() noexcept {
 
 bool stop_requested() noexcept { return g_stop_requested != 0; }
 
-}  // namespace emax::host
+}  // namespace emax::desk

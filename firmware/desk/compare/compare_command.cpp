@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "desk/cli/console.hpp"
-#include "desk/cli/nearest.hpp"
+#include "desk/cli/option_parser.hpp"
+#include "desk/cli/value_text.hpp"
 #include "desk/compare/comparison.hpp"
 #include "desk/compare/comparison_picture.hpp"
 #include "desk/compare/comparison_report.hpp"
 #include "desk/files/output_files.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -25,12 +26,6 @@ struct CompareOptions {
   bool csv = false;
 };
 
-Problem unknown_option(std::string_view argument) {
-  constexpr std::string_view kNames[] = {"--json", "--csv", "--out", "--help", "--version"};
-  return bad_input(printable(argument) + ": no option of emax compare; did you mean " +
-                   std::string(nearest(argument, kNames)) + "?");
-}
-
 Problem take_path(std::string_view argument, std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (path == argument) {
@@ -41,34 +36,26 @@ Problem take_path(std::string_view argument, std::vector<std::string>& paths) {
   return paths.size() <= kMaxFiles ? Problem{} : bad_input("compare: more than 1000 files");
 }
 
-Problem take_out(std::string_view value, std::string& directory) {
-  if (value.empty() || !directory.empty()) {
-    return bad_input(value.empty() ? "--out: no value; expected a directory"
-                                   : "--out: given twice; expected once");
-  }
-  directory = value;
-  return {};
+Syntax syntax_of(CompareOptions& options) {
+  Syntax syntax;
+  syntax.options = {
+      {"csv", "Options", "", "", "", "prints the table as CSV",
+       [&options](std::string_view) { return options.csv = true; }},
+      {"json", "Options", "", "", "", "prints everything as JSON",
+       [&options](std::string_view) { return options.json = true; }},
+      {"out", "Options", "DIR", "", "a directory",
+       "writes comparison.txt, .csv and .json, and a picture",
+       [&options](std::string_view text) { return take_text(text, options.out_directory); }}};
+  syntax.unknown = "no option of emax compare";
+  syntax.take_file = [&options](std::string_view path) { return take_path(path, options.paths); };
+  return syntax;
 }
 
-Problem parse_options(Span<const std::string_view> arguments, CompareOptions& options) {
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view argument = arguments[i];
-    Problem problem;
-    if (argument == "--json" || argument == "--csv") {
-      (argument == "--json" ? options.json : options.csv) = true;
-    } else if (argument == "--out") {
-      const bool follows = i + 1 < arguments.size() && arguments[i + 1].substr(0, 2) != "--";
-      problem = take_out(follows ? arguments[++i] : std::string_view{}, options.out_directory);
-    } else if (argument.substr(0, 6) == "--out=") {
-      problem = take_out(argument.substr(6), options.out_directory);
-    } else if (argument.size() > 1 && argument[0] == '-') {
-      problem = unknown_option(argument);
-    } else {
-      problem = take_path(argument, options.paths);
-    }
-    if (problem) {
-      return problem;
-    }
+Problem parse(Span<const std::string_view> arguments, CompareOptions& options) {
+  const Syntax syntax = syntax_of(options);
+  std::vector<Given> all;
+  if (Problem problem = parse_options(arguments, syntax, all)) {
+    return problem;
   }
   if (options.json && options.csv) {
     return bad_input("--json: excludes --csv; expected one of the two");
@@ -119,7 +106,7 @@ Problem print(const Comparison& comparison, const CompareOptions& options) {
 
 Problem run_compare(Span<const std::string_view> arguments) {
   CompareOptions options;
-  if (Problem problem = parse_options(arguments, options)) {
+  if (Problem problem = parse(arguments, options)) {
     return problem;
   }
   OutputFiles files;
@@ -152,18 +139,14 @@ Problem run_compare(Span<const std::string_view> arguments) {
 }
 
 std::string help_on_compare() {
+  CompareOptions options;
   return R"(usage: emax compare A.json B.json ... [options]
 
 Ranks devices by their maximum energy: the results.json of emax report, all with
 the same filter, a, T and criterion. Since a is the number of S by default, give
 one --limit to all reports. Two devices share ranks where the uncertainties of
 their energies do not tell them apart.
-
-Options
-  --csv                  prints the table as CSV
-  --json                 prints everything as JSON
-  --out DIR              writes comparison.txt, .csv and .json, and a picture
-)";
+)" + help_on(syntax_of(options).options);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

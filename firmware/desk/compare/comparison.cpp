@@ -9,7 +9,7 @@
 
 #include "desk/cli/console.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -140,4 +140,4 @@ Problem compare_all(std::vector<Result> results, Comparison& comparison) {
   return {};
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -7,7 +7,7 @@
 #include "desk/cli/problem.hpp"
 #include "desk/files/result_file.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// What two devices' energies say of one another.
 struct Pair {
@@ -51,4 +51,4 @@ Pair compare(const Result& first, const Result& second) noexcept;
 /// @returns The first difference between conditions, if there is one, with what to do.
 Problem compare_all(std::vector<Result> results, Comparison& comparison);
 
-}  // namespace emax::host
+}  // namespace emax::desk

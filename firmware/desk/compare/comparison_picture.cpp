@@ -12,7 +12,7 @@
 #include "desk/compare/comparison_report.hpp"
 #include "desk/pictures/gnuplot.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -93,4 +93,4 @@ void write_comparison_script(const Comparison& comparison, TextWriter& out) {
   out.text("title 'no signal has more (proven bound)'\nunset output\n");
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -5,7 +5,7 @@
 
 #include "desk/compare/comparison.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 inline constexpr const char* kComparisonScript = "comparison.gp";
 inline constexpr const char* kComparisonPicture = "comparison.svg";
@@ -14,4 +14,4 @@ inline constexpr const char* kComparisonPicture = "comparison.svg";
 /// them: the first ones.
 void write_comparison_script(const Comparison& comparison, app::TextWriter& out);
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -13,7 +13,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/files/rounding.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -267,4 +267,4 @@ void write_comparison_json(const Comparison& comparison, TextWriter& out) {
   out.line();
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

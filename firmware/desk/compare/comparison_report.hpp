@@ -7,7 +7,7 @@
 
 #include "desk/compare/comparison.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// @returns The device's label or file with its serial number, in one printable line.
 std::string name_of(const Result& result);
@@ -26,4 +26,4 @@ void write_comparison_csv(const Comparison& comparison, app::TextWriter& out);
 /// `{version, conditions{...}, devices[{...}], pairs[{...}]}`.
 void write_comparison_json(const Comparison& comparison, app::TextWriter& out);
 
-}  // namespace emax::host
+}  // namespace emax::desk

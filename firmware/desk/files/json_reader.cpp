@@ -5,7 +5,7 @@
 #include "emax/base/elementary.hpp"
 #include "emax/base/span.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -292,4 +292,4 @@ JsonError parse_json(std::string_view text, JsonValue& value) {
   return JsonParser(text).parse(value);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace emax::host {
+namespace emax::desk {
 
 /// One value of a JSON text (RFC 8259).
 class JsonValue final {
@@ -54,4 +54,4 @@ JsonError parse_json(std::string_view text, JsonValue& value);
 
 inline constexpr std::size_t kMaxJsonDepth = 32;
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -16,7 +16,7 @@
 #include "desk/cli/stop_request.hpp"
 #include "desk/pictures/gnuplot.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -183,4 +183,4 @@ Problem OutputFiles::commit() {
   return {};
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -9,7 +9,7 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Writes files into a hidden directory inside the one they are for, and moves them there at the
 /// end, so that neither an error nor Ctrl-C leaves part of a run behind.
@@ -80,4 +80,4 @@ Problem OutputFiles::add(const char* name, Write write) {
       &write);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

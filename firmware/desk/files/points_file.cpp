@@ -12,7 +12,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/files/text_file.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -82,4 +82,4 @@ Problem read_points(const std::string& path, double reference_percent, Frequency
   return take_common(name, reader, reference_percent, points);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

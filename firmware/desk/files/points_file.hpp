@@ -7,7 +7,7 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Reads the points of a CSV file (`app::PointsReader`) of at most 1 MiB.
 ///
@@ -18,4 +18,4 @@ namespace emax::host {
 /// @returns The problem with file name, line and expectation, if there is one.
 Problem read_points(const std::string& path, double reference_percent, FrequencyResponse& points);
 
-}  // namespace emax::host
+}  // namespace emax::desk

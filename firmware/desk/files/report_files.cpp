@@ -10,7 +10,7 @@
 #include "desk/page/html_page.hpp"
 #include "desk/pictures/pictures.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -142,4 +142,4 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   return problem ? problem : files.commit();
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

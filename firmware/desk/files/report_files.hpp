@@ -7,7 +7,7 @@
 #include "desk/cli/problem.hpp"
 #include "desk/files/output_files.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Writes report, results, tables, pictures and page, and puts them in place.
 ///
@@ -23,4 +23,4 @@ Problem write_files(const app::Evaluation& evaluation, const app::ReportContext&
 Problem write_fault_files(const app::ReportContext& context, const app::Evaluation* refused,
                           OutputFiles& files);
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -12,7 +12,7 @@
 #include "desk/files/json_reader.hpp"
 #include "desk/files/text_file.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -145,4 +145,4 @@ Problem read_result(const std::string& path, Result& result) {
   return {};
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -5,7 +5,7 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// A device's maximum energy and the conditions that it was found under, all from one file.
 struct Result {
@@ -45,4 +45,4 @@ struct Result {
 /// @param[out] result Of no use if there is a problem.
 Problem read_result(const std::string& path, Result& result);
 
-}  // namespace emax::host
+}  // namespace emax::desk

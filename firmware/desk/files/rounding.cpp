@@ -8,7 +8,7 @@
 
 #include "desk/cli/console.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 double rounded_up(double value, int decimals) {
   StringSink sink;
@@ -22,4 +22,4 @@ double rounded_up(double value, int decimals) {
   return value + std::pow(10.0, exponent - decimals);
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

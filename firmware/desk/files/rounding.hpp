@@ -1,7 +1,7 @@
 // Bounds in a few digits.
 #pragma once
 
-namespace emax::host {
+namespace emax::desk {
 
 /// A proven bound in fewer digits must not fall below it.
 ///
@@ -11,4 +11,4 @@ namespace emax::host {
 /// many digits that is not below `value`.
 double rounded_up(double value, int decimals);
 
-}  // namespace emax::host
+}  // namespace emax::desk

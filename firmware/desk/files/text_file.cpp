@@ -10,7 +10,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -80,4 +80,4 @@ Problem read_text_file(const std::string& path, std::size_t most, const char* ex
   return {};
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

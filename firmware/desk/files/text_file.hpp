@@ -6,7 +6,7 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// @returns The file's name for people: "standard input" for "-".
 std::string name_of_input(const std::string& path);
@@ -19,4 +19,4 @@ std::string name_of_input(const std::string& path);
 Problem read_text_file(const std::string& path, std::size_t most, const char* expectation,
                        std::string& text);
 
-}  // namespace emax::host
+}  // namespace emax::desk

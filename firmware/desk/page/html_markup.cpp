@@ -3,7 +3,7 @@
 
 #include "emax/app/base/utf8.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -224,4 +224,4 @@ void HtmlMarkup::note_warning() {
   warning_links_ += "<a href=\"#" + std::string(name.id) + "\">" + name.title + "</a>";
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -9,7 +9,7 @@
 #include "emax/app/report/report_context.hpp"
 #include "emax/base/span.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Adds text of others to HTML: markup is escaped, what is not printable replaced, line feeds kept.
 void append_quoted(std::string& html, const char* text);
@@ -78,4 +78,4 @@ class HtmlMarkup final : public app::ReportMarkup {
   app::ReportSection last_warned_ = app::ReportSection::kTitle;
 };
 
-}  // namespace emax::host
+}  // namespace emax::desk

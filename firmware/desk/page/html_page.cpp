@@ -12,7 +12,7 @@
 #include "desk/files/rounding.hpp"
 #include "desk/page/html_markup.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -352,4 +352,4 @@ void write_fault_page(const app::ReportContext& context, const Evaluation* refus
   write_html(out, html + closing());
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -10,7 +10,7 @@
 
 #include "desk/pictures/pictures.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// A picture as it stands in a page.
 struct PagePicture {
@@ -29,4 +29,4 @@ void write_page(const app::Evaluation& evaluation, const app::ReportContext& con
 void write_fault_page(const app::ReportContext& context, const app::Evaluation* refused,
                       app::TextWriter& out);
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -18,7 +18,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::string gnuplot_string(const std::string& text) {
   return quoted + "'";
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

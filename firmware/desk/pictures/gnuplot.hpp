@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-namespace emax::host {
+namespace emax::desk {
 
 enum class GnuplotEnd {
   kDone,
@@ -33,4 +33,4 @@ GnuplotRun run_gnuplot(const std::string& directory, const char* script,
 /// the string, and nothing is expanded.
 std::string gnuplot_string(const std::string& text);
 
-}  // namespace emax::host
+}  // namespace emax::desk

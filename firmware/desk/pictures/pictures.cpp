@@ -12,7 +12,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/pictures/gnuplot.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -616,4 +616,4 @@ void write_start_table(const Evaluation& evaluation, TextWriter& out) {
   }
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -8,7 +8,7 @@
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/report/report_context.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 struct Picture {
   const char* file;  ///< "signal.svg".
@@ -40,4 +40,4 @@ bool has_start_table(const app::Evaluation& evaluation);
 /// t_s,k,ka,kf.
 void write_start_table(const app::Evaluation& evaluation, app::TextWriter& out);
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -9,7 +9,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -90,4 +90,4 @@ Problem BenchJob::describe_end() const {
                std::to_string(sweep_.settings().frequency_count) + " points kept, " + drive + ")");
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -9,7 +9,7 @@
 #include "desk/cli/options.hpp"
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// A bench with its sweep; 22 KiB.
 class BenchJob final {
@@ -38,4 +38,4 @@ class BenchJob final {
   app::SimulatedBench simulated_;
 };
 
-}  // namespace emax::host
+}  // namespace emax::desk

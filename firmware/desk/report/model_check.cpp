@@ -4,7 +4,7 @@
 #include "emax/model/accelerometer.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -57,4 +57,4 @@ Problem check_model(const app::Device& device) {
   return {};
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk

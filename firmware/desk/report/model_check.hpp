@@ -5,11 +5,11 @@
 
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Checks that a device and everything within its uncertainties is of the kind that is supported.
 ///
 /// @returns The problem of the option --model, if there is one, with what is supported and why.
 Problem check_model(const app::Device& device);
 
-}  // namespace emax::host
+}  // namespace emax::desk

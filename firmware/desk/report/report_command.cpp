@@ -24,7 +24,7 @@
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -207,4 +207,16 @@ Problem run_report(Span<const std::string_view> arguments) {
   return problem ? problem : remark;
 }
 
-}  // namespace emax::host
+std::string help_on_report() {
+  return R"(usage: emax report [options]
+       emax report --points FILE [options]
+       emax report --model S,f0,beta[,uS,uf0,ubeta] [options]
+
+Measures an accelerometer on the simulated bench, or takes measured points or
+known parameters; identifies it, finds the signal with the largest error energy
+and prints a report. Numbers are in SI units; --option VALUE and --option=VALUE
+both do.
+)" + help_on_report_options();
+}
+
+}  // namespace emax::desk

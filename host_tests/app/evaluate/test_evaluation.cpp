@@ -312,7 +312,8 @@ TEST(Evaluation, HistoryDoesNotMatter) {
   EXPECT_EQ(json_of(evaluation) + report_of(evaluation), expected);
 
   // After a job that was left in the middle, and after one that was refused.
-  ASSERT_EQ(evaluation.start_from_points(table1(), Settings{}, shared_workspace()), Status::kOk);
+  ASSERT_EQ(evaluation.start_from_points(table1(), emax::app::kDefaultSettings, shared_workspace()),
+            Status::kOk);
   for (int i = 0; i < 150; ++i) {
     evaluation.step(shared_workspace());
   }

@@ -517,7 +517,7 @@ TEST(Instrument, SendsTheReportAsABlock) {
       i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000;:CALC:TREN? 2ms,3ms;REP?");
   const std::size_t at = block.find(";#");
   ASSERT_NE(at, std::string::npos);
-  app::Settings settings;
+  app::Settings settings = emax::app::kDefaultSettings;
   settings.trials = 1000;
   settings.trend_s = {0.002, 0.003};
   settings.trend_count = 2;

@@ -19,6 +19,7 @@
 namespace {
 
 using emax::Status;
+using emax::app::default_sweep_settings;
 using emax::app::Sweep;
 using emax::app::SweepPoint;
 using emax::app::SweepSettings;
@@ -32,7 +33,7 @@ using emax::test::SweepRun;
 
 TEST(SweepSettings, DefaultsAreTheFrequenciesOfTable1) {
   const auto table = emax::test::table1_numbers();
-  const SweepSettings settings;
+  const SweepSettings settings = default_sweep_settings();
   ASSERT_EQ(settings.frequency_count, table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
     EXPECT_EQ(settings.frequency_hz[i], table[i][0]);
@@ -46,7 +47,7 @@ TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
     BenchSettings bench;
     bench.seed = seed;
     SweepRun run(bench);
-    run.to_end(SweepSettings());
+    run.to_end(default_sweep_settings());
     ASSERT_EQ(run.sweep.status(), Status::kOk);
     ASSERT_EQ(run.sweep.points().size(), 42U);
     for (const SweepPoint& point : run.sweep.points()) {
@@ -79,7 +80,7 @@ TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
 
 TEST(Sweep, IdealBenchComesBackExactly) {
   SweepRun run(ideal_bench());
-  run.to_end(SweepSettings());
+  run.to_end(default_sweep_settings());
   ASSERT_EQ(run.sweep.status(), Status::kOk);
   for (const SweepPoint& point : run.sweep.points()) {
     const std::complex<double> k =
@@ -99,7 +100,7 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
       format.block_frames = block;
       format.latency_frames = latency;
       SweepRun run(BenchSettings(), format);
-      SweepSettings settings;
+      SweepSettings settings = default_sweep_settings();
       settings.frequency_hz = {200.0, 1000.0, 4000.0};
       settings.frequency_count = 3;
       run.to_end(settings);
@@ -126,7 +127,7 @@ void expect_same_points(const Sweep& sweep, const std::vector<SweepPoint>& expec
 }
 
 TEST(Sweep, RunsAgainWithTheSameBits) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.frequency_hz = {300.0, 700.0, 5000.0};
   settings.frequency_count = 3;
   SweepRun run((BenchSettings()));
@@ -136,14 +137,14 @@ TEST(Sweep, RunsAgainWithTheSameBits) {
   BenchSettings other;
   other.seed = 99;
   ASSERT_EQ(run.bench.configure(other), Status::kOk);
-  run.to_end(SweepSettings());
+  run.to_end(default_sweep_settings());
   ASSERT_EQ(run.bench.configure(BenchSettings()), Status::kOk);
   run.to_end(settings);
   expect_same_points(run.sweep, before);
 }
 
 TEST(Sweep, WhatTheWorkspaceHoldsBeforeAndAfterDoesNotMatter) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.frequency_hz = {300.0, 700.0, 5000.0};
   settings.frequency_count = 3;
   SweepRun clean((BenchSettings()));
@@ -176,8 +177,9 @@ TEST(Sweep, StagesFollowEachOther) {
   EXPECT_TRUE(run.sweep.done());
   EXPECT_EQ(run.sweep.stage(), SweepStage::kIdle);
   run.sweep.step(run.bench, run.work);  // Nothing.
-  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
-  EXPECT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kAlreadyRunning);
+  ASSERT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work), Status::kOk);
+  EXPECT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work),
+            Status::kAlreadyRunning);
   emax::FrequencyResponse response;
   EXPECT_EQ(run.sweep.copy_to(response), Status::kNotRunning);
   std::vector<SweepStage> stages = {run.sweep.stage()};
@@ -218,7 +220,7 @@ TEST(Sweep, DriveKeepsItsLimits) {
                         {0.3, 5.0, 1e5, 20000.0}};
   for (const Case& c : cases) {
     SweepRun run((BenchSettings()));
-    SweepSettings settings;
+    SweepSettings settings = default_sweep_settings();
     settings.frequency_hz = {30.0, 100.0, 1000.0, 1001.0, c.highest_hz};
     settings.frequency_count = 5;
     settings.level_mps2 = c.level_mps2;
@@ -233,7 +235,7 @@ TEST(Sweep, DriveKeepsItsLimits) {
 TEST(Sweep, StopsBetweenAnyTwoBlocks) {
   for (const std::uint64_t blocks : {0U, 1U, 200U, 400U, 900U, 3000U, 6000U, 8950U}) {
     SweepRun run((BenchSettings()));
-    SweepSettings settings;
+    SweepSettings settings = default_sweep_settings();
     ASSERT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
     while (run.sweep.blocks() < blocks) {
       run.sweep.step(run.bench, run.work);
@@ -262,7 +264,7 @@ TEST(Sweep, OverrangeLowersTheDrive) {
   // A gain of 20 that the settings know of: 1 m/s^2 would need 20 V at the converter.
   BenchSettings bench;
   bench.device_gain = 20.0;
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.device_gain = 20.0;
   SweepRun run(bench);
   run.to_end(settings);
@@ -307,9 +309,9 @@ class EchoStream final : public emax::hal::AnalogStream {
 
 /// The drive of the first point, in the midst of which the reference sees so much.
 double drive_with_spike(double volts) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.frequency_count = 3;
-  settings.limit_mps2 = 5.0;  // 1 V per m/s^2.
+  settings.acceleration_limit_mps2 = 5.0;  // 1 V per m/s^2.
   EchoStream stream;
   static Sweep sweep;
   static SweepWorkspace work;
@@ -335,7 +337,7 @@ TEST(Sweep, APeakOfEitherSignBeyondTheLimitLowersTheDrive) {
 TEST(Sweep, WeakSignalRaisesTheDrive) {
   BenchSettings bench;
   bench.shaker.gain = 0.01;
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 0.02;
   SweepRun run(bench);
   run.to_end(settings);
@@ -344,9 +346,9 @@ TEST(Sweep, WeakSignalRaisesTheDrive) {
 }
 
 TEST(Sweep, LevelAtTheAccelerationLimit) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 2.0;
-  settings.limit_mps2 = 2.0;
+  settings.acceleration_limit_mps2 = 2.0;
   SweepRun run((BenchSettings()));
   run.to_end(settings);
   ASSERT_EQ(run.sweep.status(), Status::kOk);
@@ -358,7 +360,7 @@ TEST(Sweep, LevelAtTheAccelerationLimit) {
 }
 
 TEST(Sweep, UnreachableLevel) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 19.0;  // 5 V reach 10 m/s^2.
   SweepRun run((BenchSettings()));
   run.to_end(settings);
@@ -367,7 +369,7 @@ TEST(Sweep, UnreachableLevel) {
   run.expect_limits_kept(settings);
 
   // At 6 kHz the slope permits 0.9 (20 kV/s)/(2 pi 6 kHz) = 0.48 V; at 3 kHz it is enough.
-  settings = SweepSettings();
+  settings = default_sweep_settings();
   settings.slew_v_per_s = 2e4;
   settings.level_mps2 = 1.5;
   SweepRun slow((BenchSettings()));
@@ -382,24 +384,24 @@ TEST(Sweep, DeadShaker) {
   BenchSettings bench;
   bench.shaker.gain = 1e-7;
   SweepRun run(bench);
-  run.to_end(SweepSettings());
+  run.to_end(default_sweep_settings());
   EXPECT_EQ(run.sweep.status(), Status::kWeakSignal);
-  run.expect_limits_kept(SweepSettings());
+  run.expect_limits_kept(default_sweep_settings());
 }
 
 TEST(Sweep, DistortionIsFlaggedThenRefused) {
   BenchSettings bench;
   bench.second_harmonic = 0.1;  // 5 % at 0.5 V.
   SweepRun flagged(bench);
-  flagged.to_end(SweepSettings());
+  flagged.to_end(default_sweep_settings());
   ASSERT_EQ(flagged.sweep.status(), Status::kOk);
   EXPECT_TRUE(flagged.sweep.points()[10].flagged);
   EXPECT_NEAR(flagged.sweep.points()[10].residual_percent, 3.6, 0.8);
   SweepRun clean((BenchSettings()));
-  clean.to_end(SweepSettings());
+  clean.to_end(default_sweep_settings());
   EXPECT_FALSE(clean.sweep.points()[10].flagged);
 
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 5.0;  // 2.5 V: 25 %.
   SweepRun refused(bench);
   refused.to_end(settings);
@@ -407,7 +409,7 @@ TEST(Sweep, DistortionIsFlaggedThenRefused) {
 }
 
 TEST(Sweep, ReferenceTableIsInterpolated) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.frequency_hz = {500.0, 2000.0, 5000.0};
   settings.frequency_count = 3;
   // Twice the true 0.1 in the middle: the accelerations read half, the ratio doubles.
@@ -431,7 +433,7 @@ TEST(Sweep, DriftOfTheCheckEntersTheCommonPart) {
   bench.drift_expanded_percent = 2.0;
   bench.seed = 4;
   SweepRun run(bench);
-  run.to_end(SweepSettings());
+  run.to_end(default_sweep_settings());
   ASSERT_EQ(run.sweep.status(), Status::kOk);
   // Both checks are near the ends of the sweep: 0.36 s and 5.86 s of the 10 s of the drift.
   const double change = run.bench.truth().reference_drift * 0.55;
@@ -444,7 +446,7 @@ TEST(Sweep, HumRaisesTheUncertaintyWhereItIs) {
   BenchSettings bench;
   bench.hum_v = 5e-3;
   SweepRun run(bench);
-  run.to_end(SweepSettings());
+  run.to_end(default_sweep_settings());
   ASSERT_EQ(run.sweep.status(), Status::kOk);
   const SweepPoint& at50 = run.sweep.points()[2];
   ASSERT_EQ(at50.point.frequency_hz, 50.0);
@@ -476,8 +478,8 @@ const BadSetting kBad[] = {
     {"check frequency", [](SweepSettings& s) { s.check_hz = kNan; }},
     {"level", [](SweepSettings& s) { s.level_mps2 = 0.0; }},
     {"level", [](SweepSettings& s) { s.level_mps2 = kNan; }},
-    {"acceleration limit", [](SweepSettings& s) { s.limit_mps2 = 0.5; }},
-    {"acceleration limit", [](SweepSettings& s) { s.limit_mps2 = kInfinity; }},
+    {"acceleration limit", [](SweepSettings& s) { s.acceleration_limit_mps2 = 0.5; }},
+    {"acceleration limit", [](SweepSettings& s) { s.acceleration_limit_mps2 = kInfinity; }},
     {"drive limit", [](SweepSettings& s) { s.drive_limit_v = 10.1; }},
     {"drive limit", [](SweepSettings& s) { s.drive_limit_v = 0.0; }},
     {"drive limit", [](SweepSettings& s) { s.drive_limit_v = kNan; }},
@@ -516,12 +518,12 @@ const BadSetting kBad[] = {
 
 TEST(Sweep, BadSettingsAreRefusedByName) {
   SweepRun run((BenchSettings()));
-  SweepSettings few;
+  SweepSettings few = default_sweep_settings();
   few.frequency_hz = {300.0, 700.0, 5000.0};
   few.frequency_count = 3;
   run.to_end(few);
   for (const BadSetting& bad : kBad) {
-    SweepSettings settings;
+    SweepSettings settings = default_sweep_settings();
     bad.spoil(settings);
     EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kInvalidArgument) << bad.name;
     ASSERT_NE(run.sweep.refused_setting(), nullptr);
@@ -530,7 +532,7 @@ TEST(Sweep, BadSettingsAreRefusedByName) {
     EXPECT_FALSE(run.bench.running());
     EXPECT_EQ(run.sweep.points().size(), 3U);  // What was measured before is still there.
   }
-  ASSERT_EQ(run.sweep.start(SweepSettings(), run.bench, run.work), Status::kOk);
+  ASSERT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work), Status::kOk);
   EXPECT_EQ(run.sweep.refused_setting(), nullptr);
 }
 
@@ -538,7 +540,7 @@ TEST(Sweep, BenchThatDoesNotStart) {
   SimBench bench;  // Not configured.
   static Sweep sweep;
   static SweepWorkspace work;
-  EXPECT_EQ(sweep.start(SweepSettings(), bench, work), Status::kHardwareFault);
+  EXPECT_EQ(sweep.start(default_sweep_settings(), bench, work), Status::kHardwareFault);
   EXPECT_TRUE(sweep.done());
   EXPECT_EQ(sweep.refused_setting(), nullptr);
 }

@@ -14,6 +14,7 @@
 namespace {
 
 using emax::Status;
+using emax::app::default_sweep_settings;
 using emax::app::SweepPoint;
 using emax::app::SweepSettings;
 using emax::app::SweepStage;
@@ -54,14 +55,14 @@ TEST_P(SweepFaults, AreNamedAndEndAtZero) {
       settings.seed = seed;
       settings.fault = {GetParam().fault, at_frame};
       SweepRun run(settings);
-      run.to_end(SweepSettings());
+      run.to_end(default_sweep_settings());
       EXPECT_EQ(run.sweep.status(), GetParam().status)
           << "frame " << at_frame << ": " << emax::explain(run.sweep.status());
       EXPECT_EQ(run.sweep.stage(), SweepStage::kFailed);
       // The step that detects it exchanges a block (two where one is lost), leads the drive to zero
       // and lets the frames on their way arrive.
       EXPECT_LE(run.last_step_frames, 2 * 64 + emax::hal::kMaxRampFrames + 37);
-      run.expect_limits_kept(SweepSettings());
+      run.expect_limits_kept(default_sweep_settings());
       // The points before the fault are there, and good. One that the fault fell into may be too,
       // if the fault is within its noise, but then it is the last or flagged.
       std::size_t bad = 0;
@@ -93,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(All, SweepFaults, testing::ValuesIn(kFaults), [](const 
 
 TEST(SweepFaults, GainThatWasSetWrong) {
   // Ten times off: far from what the data sheet says.
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.device_gain = 10.0;
   SweepRun run((BenchSettings()));
   run.to_end(settings);
@@ -106,7 +107,7 @@ TEST(SweepFaults, GainThatWasSetWrong) {
 }
 
 TEST(SweepFaults, ExchangedCablesWithoutADataSheet) {
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.expected_sensitivity = 0.0;
   BenchSettings bench;
   bench.fault = {FaultKind::kSwappedChannels, 0};
@@ -125,7 +126,7 @@ TEST(SweepFaults, PhaseBeyondHalfATurnIsNoFault) {
   BenchSettings bench;
   bench.device.natural_frequency_hz = 900.0;
   bench.device.damping = 0.1;
-  SweepSettings settings;
+  SweepSettings settings = default_sweep_settings();
   settings.skew_s = 6e-6;
   SweepRun run(bench);
   run.to_end(settings);

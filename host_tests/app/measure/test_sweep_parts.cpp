@@ -272,7 +272,7 @@ TEST(SweepBudget, OneInAThousandScattersByChance) {
 }
 
 TEST(SweepBudget, CommonPart) {
-  emax::app::SweepSettings settings;
+  emax::app::SweepSettings settings = emax::app::default_sweep_settings();
   const emax::app::CommonBudget common = emax::app::common_budget(settings, -3e-3);
   EXPECT_NEAR(common.reference, 0.0025, 1e-15);
   EXPECT_NEAR(common.gain, 0.0005, 1e-15);

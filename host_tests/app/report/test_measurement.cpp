@@ -47,7 +47,7 @@ const SimulatedBench kSimulated = {1, {1.037, 4073.0, 0.3182}};
 
 struct FinishedRun : SweepRun {
   explicit FinishedRun(const BenchSettings& settings) : SweepRun(settings) {
-    to_end(SweepSettings());
+    to_end(emax::app::default_sweep_settings());
   }
 };
 

@@ -19,7 +19,7 @@ using emax::app::SettingsError;
 using Change = std::function<void(Settings&)>;
 
 SettingsError check_with(const Change& change) {
-  Settings settings;
+  Settings settings = emax::app::kDefaultSettings;
   change(settings);
   return check(settings);
 }
@@ -43,7 +43,7 @@ const double kNan = std::nan("");
 const double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Settings, DefaultsAreAccepted) {
-  const SettingsError error = check(Settings{});
+  const SettingsError error = check(emax::app::kDefaultSettings);
   EXPECT_EQ(error.setting, nullptr);
   EXPECT_EQ(error.expectation, nullptr);
 }

@@ -19,7 +19,9 @@ namespace {
 
 using emax::Span;
 using emax::Status;
+using emax::app::default_sweep_settings;
 using emax::app::Identification;
+using emax::app::kDefaultSettings;
 using emax::app::RecordStore;
 using emax::app::SavedSettings;
 using emax::app::Settings;
@@ -45,8 +47,8 @@ Bytes encoded(const Identification& identification) {
 /// Targets that hold something recognisable.
 struct Target {
   SavedSettings scratch;
-  Settings settings;
-  SweepSettings sweep;
+  Settings settings = kDefaultSettings;
+  SweepSettings sweep = default_sweep_settings();
 
   Target() {
     settings.trials = 4711;
@@ -90,7 +92,7 @@ void fill(Settings& settings, SweepSettings& sweep) {
     sweep.frequency_hz[i] = 33.3 * static_cast<double>(i + 1);
   }
   sweep.level_mps2 = 2.5;
-  sweep.limit_mps2 = 31.0;
+  sweep.acceleration_limit_mps2 = 31.0;
   sweep.drive_limit_v = 4.25;
   sweep.slew_v_per_s = 12345.0;
   sweep.settle_s = 0.25;
@@ -116,7 +118,7 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
   EXPECT_EQ(found.frequency_hz, expected.frequency_hz);
   EXPECT_EQ(found.frequency_count, expected.frequency_count);
   EXPECT_EQ(found.level_mps2, expected.level_mps2);
-  EXPECT_EQ(found.limit_mps2, expected.limit_mps2);
+  EXPECT_EQ(found.acceleration_limit_mps2, expected.acceleration_limit_mps2);
   EXPECT_EQ(found.drive_limit_v, expected.drive_limit_v);
   EXPECT_EQ(found.slew_v_per_s, expected.slew_v_per_s);
   EXPECT_EQ(found.settle_s, expected.settle_s);
@@ -137,8 +139,8 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
 }
 
 TEST(SavedSettings, ComeBackAsTheyWere) {
-  Settings settings;
-  SweepSettings sweep;
+  Settings settings = kDefaultSettings;
+  SweepSettings sweep = default_sweep_settings();
   EXPECT_EQ(encoded(settings, sweep).size(), 220U + 8 * 5 + 8 * 42 + 16 * 1);
   Target target;
   ASSERT_EQ(target.decode(encoded(settings, sweep)), Status::kOk);
@@ -176,7 +178,7 @@ TEST(SavedSettings, ComeBackAsTheyWere) {
 
 // The layout is a promise to later versions. The numbers' bytes are from Python's struct.pack.
 TEST(SavedSettings, BytesOfTheDefaults) {
-  const Bytes bytes = encoded(Settings(), SweepSettings());
+  const Bytes bytes = encoded(kDefaultSettings, default_sweep_settings());
   const std::array<std::uint8_t, 33> expected = {
       'E',  'S',  1,    0,                              // Kind and version.
       10,   0,    0,    0,                              // Order.
@@ -191,8 +193,8 @@ TEST(SavedSettings, BytesOfTheDefaults) {
 }
 
 TEST(SavedSettings, NoRoomNoBytes) {
-  Settings settings;
-  SweepSettings sweep;
+  Settings settings = kDefaultSettings;
+  SweepSettings sweep = default_sweep_settings();
   fill(settings, sweep);
   Bytes room(emax::app::kMaxSavedSettingsBytes, 0x77);
   for (std::size_t size = 0; size < room.size(); ++size) {
@@ -204,8 +206,8 @@ TEST(SavedSettings, NoRoomNoBytes) {
 }
 
 TEST(SavedSettings, TooFewOrTooManyBytesAreRefused) {
-  Settings settings;
-  SweepSettings sweep;
+  Settings settings = kDefaultSettings;
+  SweepSettings sweep = default_sweep_settings();
   fill(settings, sweep);
   const Bytes whole = encoded(settings, sweep);
   Target target;
@@ -222,7 +224,7 @@ TEST(SavedSettings, TooFewOrTooManyBytesAreRefused) {
 }
 
 TEST(SavedSettings, OtherKindsAndVersionsAreRefused) {
-  const Bytes whole = encoded(Settings(), SweepSettings());
+  const Bytes whole = encoded(kDefaultSettings, default_sweep_settings());
   Target target;
   for (std::size_t byte = 0; byte < 4; ++byte) {
     for (unsigned bit = 0; bit < 8; ++bit) {
@@ -237,10 +239,11 @@ TEST(SavedSettings, OtherKindsAndVersionsAreRefused) {
 
 // Bytes with a right checksum but of wrong values: each is refused, or is what `check()` lets pass.
 TEST(SavedSettings, NoBytesLeadToSettingsThatCheckRefuses) {
-  Settings settings;
-  SweepSettings sweep;
+  Settings settings = kDefaultSettings;
+  SweepSettings sweep = default_sweep_settings();
   fill(settings, sweep);
-  for (const Bytes& whole : {encoded(Settings(), SweepSettings()), encoded(settings, sweep)}) {
+  for (const Bytes& whole :
+       {encoded(kDefaultSettings, default_sweep_settings()), encoded(settings, sweep)}) {
     std::size_t accepted = 0;
     std::size_t refused = 0;
     for (std::size_t byte = 4; byte < whole.size(); ++byte) {
@@ -295,8 +298,8 @@ TEST(SavedSettings, WhatCheckRefusesIsRefused) {
   };
   std::size_t index = 0;
   for (const Change& change : changes) {
-    Settings settings;
-    SweepSettings sweep;
+    Settings settings = kDefaultSettings;
+    SweepSettings sweep = default_sweep_settings();
     change(settings, sweep);
     Target target;
     EXPECT_EQ(target.decode(encoded(settings, sweep)), Status::kUnknownRecord) << index;
@@ -357,7 +360,7 @@ TEST(SavedIdentification, ComesBackAsItWas) {
 TEST(SavedIdentification, IsTheOneOfTheEvaluation) {
   emax::app::Evaluation& evaluation = emax::test::shared_evaluation();
   emax::app::EvaluationWorkspace& workspace = emax::test::shared_workspace();
-  const Settings settings;
+  const Settings settings = kDefaultSettings;
   ASSERT_EQ(evaluation.start_from_points(emax::test::table1(), settings, workspace,
                                          emax::app::Goal::kModel),
             Status::kOk);
@@ -453,7 +456,8 @@ TEST(SavedIdentification, TooFewOrTooManyBytesAreRefused) {
     bytes.pop_back();
     EXPECT_EQ(decode(bytes, found), Status::kUnknownRecord) << bytes.size();
   }
-  EXPECT_EQ(decode(encoded(Settings(), SweepSettings()), found), Status::kUnknownRecord);
+  EXPECT_EQ(decode(encoded(kDefaultSettings, default_sweep_settings()), found),
+            Status::kUnknownRecord);
   EXPECT_EQ(found.dof, 55U);
 }
 
@@ -461,11 +465,11 @@ TEST(SavedIdentification, TooFewOrTooManyBytesAreRefused) {
 TEST(SavedSettings, CutAtEveryByteOfTheMemory) {
   const emax::hal::StoreFormat format = {2 * emax::app::kSavedRecords, 1536, 32};
   const auto save = [](emax::hal::Store& store, std::uint32_t trials) {
-    Settings settings;
+    Settings settings = kDefaultSettings;
     settings.trials = trials;
     Bytes frame(emax::app::kMaxSavedSettingsBytes + RecordStore::kFrameBytes);
     const std::size_t size = emax::app::encode(
-        settings, SweepSettings(), RecordStore::record_in({frame.data(), frame.size()}));
+        settings, default_sweep_settings(), RecordStore::record_in({frame.data(), frame.size()}));
     return RecordStore(store).write(3, {frame.data(), size + RecordStore::kFrameBytes});
   };
   bool was_cut = true;

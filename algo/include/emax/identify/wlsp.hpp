@@ -20,9 +20,9 @@ namespace emax {
 inline constexpr std::size_t kWlspParameters = 3;
 
 struct WlspFit {
-  Status status = Status::kTooFewPoints;  ///< What `Wlsp::fit()` answered.
-  std::uint32_t dof = 0;                  ///< Degrees of freedom, 2 points - 3.
-  Accelerometer model;                    ///< The estimates.
+  Status status = Status::kOk;  ///< What `Wlsp::fit()` answered.
+  std::uint32_t dof = 0;        ///< Degrees of freedom, 2 points - 3.
+  Accelerometer model;          ///< The estimates.
   double u_sensitivity =
       0.0;  ///< Standard uncertainties: the roots of the diagonal of `covariance`.
   double u_natural_frequency_hz = 0.0;
@@ -106,12 +106,6 @@ class Wlsp {
     Complex column[3];
   };
 
-  // All zero, so that the object may sit in .bss.
-  static constexpr WlspFit no_fit() noexcept {
-    WlspFit fit;
-    fit.status = Status::kOk;
-    return fit;
-  }
   Status load(const FrequencyResponse& response) noexcept;
   Status solve() noexcept;
   Status reject(Status status) noexcept;
@@ -133,7 +127,7 @@ class Wlsp {
   double first_scaled_[3] = {};  // The same of the fit without the common part.
   double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
   bool has_common_ = false;
-  WlspFit fit_ = no_fit();
+  WlspFit fit_;
 };
 
 static_assert(std::is_trivially_copyable_v<Wlsp>);

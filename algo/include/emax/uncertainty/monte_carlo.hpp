@@ -29,7 +29,7 @@ struct CoverageInterval {
 };
 
 struct MonteCarloResult {
-  Status status = Status::kTooFewTrials;
+  Status status = Status::kOk;
   std::uint32_t trials = 0;  ///< M.
   double probability = 0.0;
   double mean = 0.0;  ///< The estimate of the output, JCGM 101 7.6.
@@ -180,7 +180,7 @@ static_assert(std::is_trivially_copyable_v<MonteCarlo>);
 static_assert(sizeof(MonteCarlo) <= 384);
 
 struct AdaptiveResult {
-  Status status = Status::kTooFewTrials;
+  Status status = Status::kOk;
   bool stabilised = false;   ///< False if the limit on blocks came first.
   std::uint32_t trials = 0;  ///< Blocks times the size of a block: the number of trials found.
   std::uint32_t blocks = 0;

@@ -11,7 +11,7 @@ namespace emax {
 /// E = slope T + intercept. Units are those of the points: with T in s and E in V^2 s, the slope is
 /// in V^2.
 struct Trend {
-  Status status = Status::kTooFewPoints;
+  Status status = Status::kOk;
   std::size_t points = 0;
   double slope = 0.0;
   double intercept = 0.0;

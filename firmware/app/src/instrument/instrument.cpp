@@ -101,14 +101,14 @@ void Instrument::reset() noexcept {
 }
 
 void Instrument::reset_settings() noexcept {
-  settings_ = {};
+  settings_ = kDefaultSettings;
   sweep_settings_ = default_sweep();
   invalidate(Change::kEnergy);
   seed_generator();
 }
 
 SweepSettings Instrument::default_sweep() const noexcept {
-  return board_.bench != nullptr ? *board_.bench : SweepSettings();
+  return board_.bench != nullptr ? *board_.bench : default_sweep_settings();
 }
 
 void Instrument::seed_generator() noexcept {

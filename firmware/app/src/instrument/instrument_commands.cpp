@@ -4,7 +4,8 @@
 #include "emax/app/base/version.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
 #include "emax/base/elementary.hpp"
-#include "emax/energy/fixed_point.hpp"
+
+#include "setting_commands.hpp"
 
 namespace emax::app {
 namespace {
@@ -83,44 +84,19 @@ namespace {
 
 using C = InstrumentCommands;
 using I = Instrument;
-using Change = C::Change;
 using scpi::Forms;
-using scpi::IntegerRule;
-using scpi::NumberRule;
 using scpi::standard;
-
-// Ranges of the settings; `check()` has the last word.
-constexpr double kNanoSecond = 1e-9;
-constexpr double kOfBoard = 0.0;  // A default that is looked up.
-constexpr Settings kDefaults;
-constexpr IntegerRule kOrder = {1, kMaxFilterOrder, kDefaults.filter_order};
-constexpr NumberRule kCutoff = {kMinFrequency_hz, kMaxFrequency_hz, kDefaults.cutoff_hz,
-                                scpi::kHertz};
-constexpr NumberRule kTime = {kNanoSecond, kMaxDuration_s, kDefaults.duration_s, scpi::kSecond};
-constexpr NumberRule kStep = {kNanoSecond, kMaxDuration_s, kDefaults.step_s, scpi::kSecond};
-constexpr IntegerRule kIterations = {1, kMaxIterations, kDefaults.iterations};
-constexpr IntegerRule kTrials = {kMinTrials, kMaxTrials, kDefaults.trials};
-constexpr NumberRule kProbability = {1e-6, 0.999999, kDefaults.probability, nullptr};
-constexpr NumberRule kSettle = {0.0, 10.0, kOfBoard, scpi::kSecond};
-constexpr NumberRule kLevel = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
-constexpr NumberRule kAccelerationLimit = {1e-9, 1e9, kOfBoard, scpi::kMetrePerSecondSquared};
-constexpr NumberRule kSlew = {1e-9, 1e9, kOfBoard, scpi::kVoltPerSecond};
-constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence"};
-constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
-constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
-constexpr const char* kGeneratorWords[] = {"WH2006", "WH1982"};
 
 constexpr auto kSet = Forms::kSet;
 constexpr auto kQuery = Forms::kQuery;
 constexpr auto kBoth = Forms::kSetAndQuery;
 constexpr std::uint8_t kPlain = scpi::kPlain;
 constexpr std::uint8_t kImmediate = scpi::kImmediate;
-constexpr std::uint8_t kQueryLimits = scpi::kQueryLimits;
 
 // Only what answers nothing, or is asked for in order to see how far a query is, overtakes: all
 // other answers come in the order of their queries.
 // clang-format off
-constexpr scpi::Command<Instrument> kCommands[] = {
+constexpr scpi::Command<Instrument> kCommon[] = {
     {"*CLS", kSet, "", "Clears errors and events", kPlain, C::clear},
     {"*ESE", kBoth, "<mask>", "Events that count in bit 5 of *STB?", kPlain, standard<scpi::event_enable, I>},
     {"*ESR", kQuery, "", "Events since the last look; clears them", kPlain, standard<scpi::event_status, I>},
@@ -154,12 +130,9 @@ constexpr scpi::Command<Instrument> kCommands[] = {
     {"[SENSe:]REFerence:SENSitivity", kBoth, "<V/(m/s2)>[,<percent>]", "Of the reference sensor, and its expanded uncertainty", kPlain, C::reference},
     {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, ascending", kPlain, C::sweep_frequencies},
     {"[SENSe:]SWEep:FREQuency:DEFault", kSet, "", "The 42 frequencies of the default sweep", kPlain, C::default_frequencies},
-    {"[SENSe:]SWEep:CYCLes", kBoth, "<n>", "Periods per repeat, at least", kQueryLimits, C::sweep_cycles},
-    {"[SENSe:]SWEep:SETTle", kBoth, "<s>", "Rest after each ramp; three periods at least", kQueryLimits, C::sweep_number<&SweepSettings::settle_s, kSettle>},
-    {"SOURce:LEVel", kBoth, "<m/s2>", "Peak acceleration to reach", kQueryLimits, C::sweep_number<&SweepSettings::level_mps2, kLevel>},
-    {"SOURce:LIMit", kBoth, "<m/s2>", "Peak acceleration never to exceed", kQueryLimits, C::sweep_number<&SweepSettings::limit_mps2, kAccelerationLimit>},
-    {"SOURce:SLEW", kBoth, "<V/s>", "Slope of the drive never to exceed", kQueryLimits, C::sweep_number<&SweepSettings::slew_v_per_s, kSlew>},
+};
 
+constexpr scpi::Command<Instrument> kWork[] = {
     {"INITiate[:SWEep]", kSet, "", "Starts the sweep", kPlain, C::initiate_sweep},
     {"INITiate:ENERgy", kSet, "", "Starts the search for the maximum energy", kPlain, C::initiate<Goal::kEnergy>},
     {"INITiate:MCARlo", kSet, "", "Starts the Monte Carlo trials, after the energy", kPlain, C::initiate<Goal::kMonteCarlo>},
@@ -175,28 +148,18 @@ constexpr scpi::Command<Instrument> kCommands[] = {
     {"CALCulate:IDENtify", kQuery, "", "Fits the points: S,f0,beta,uS,uf0,ubeta,chi2,dof", kPlain, C::identify},
     {"CALCulate:IDENtify:COVariance", kQuery, "", "Covariance of S, f0, beta, row by row", kPlain, C::covariance},
     {"CALCulate:MODel", kBoth, "<S>,<f0>,<beta>[,<uS>,<uf0>,<ubeta>]", "The device by its parameters, standard u", kPlain, C::model},
-    {"CALCulate:FILTer:ORDer", kBoth, "<L>", "Order of the reference filter", kQueryLimits, C::integer<int, &Settings::filter_order, kOrder, Change::kEnergy>},
-    {"CALCulate:FILTer:FREQuency", kBoth, "<Hz>", "Its cutoff frequency", kQueryLimits, C::number<&Settings::cutoff_hz, kCutoff, Change::kEnergy>},
-    {"CALCulate:FILTer:GAIN", kBoth, "<g>|AUTO|TRACk", "Its gain; AUTO: the estimate of S, TRACk: the S of each trial", kQueryLimits, C::filter_gain},
-    {"CALCulate:ENERgy:TIME", kBoth, "<T>", "Length of the signal", kQueryLimits, C::number<&Settings::duration_s, kTime, Change::kEnergy>},
-    {"CALCulate:ENERgy:LIMit", kBoth, "<a>|AUTO", "The signal stays within +-a; AUTO: the number of S", kQueryLimits, C::energy_limit},
-    {"CALCulate:ENERgy:CRITerion", kBoth, "ISE|DIFFerence", "Energy of the error, or difference of the energies", kPlain, C::choice<Criterion, &Settings::criterion, kCriterionWords, Change::kEnergy>},
-    {"CALCulate:ENERgy:METHod", kBoth, "BEST|PAPer", "Many starts, or the fixed point of the paper", kPlain, C::choice<Method, &Settings::method, kMethodWords, Change::kEnergy>},
-    {"CALCulate:ENERgy:STEP", kBoth, "<s>", "Grid step of PAPer and FPA?", kQueryLimits, C::number<&Settings::step_s, kStep, Change::kPaper>},
-    {"CALCulate:ENERgy:ITERations", kBoth, "<J>", "Iterations of PAPer and FPA?, at most", kQueryLimits, C::integer<std::uint32_t, &Settings::iterations, kIterations, Change::kPaper>},
+};
+
+constexpr scpi::Command<Instrument> kEnergy[] = {
     {"CALCulate:ENERgy", kQuery, "", "The maximum energy: E,xi,bound,n,t1,...,tn", kPlain, C::energy},
     {"CALCulate:ENERgy:EVALuate", kQuery, "[<t1>,...]", "Energy of the signal that starts at +a and changes sign at these times", kPlain, C::evaluate},
     {"CALCulate:ENERgy:FPA", kQuery, "", "The fixed point of the paper: iterations,E_0,E_1,...", kPlain, C::fixed_point},
     {"CALCulate:AERRor", kQuery, "", "The largest absolute error, V", kPlain, C::absolute_error},
     {"CALCulate:IMPulse", kQuery, "<t1>,...", "k(t)", kPlain, C::impulse_response},
     {"CALCulate:SETTle", kQuery, "", "The 5 % settling time", kPlain, C::settling_time},
-    {"CALCulate:MCARlo:TRIals", kBoth, "<M>", "Number of trials", kQueryLimits, C::integer<std::uint32_t, &Settings::trials, kTrials, Change::kTrials>},
-    {"CALCulate:MCARlo:ADAPtive", kBoth, "<on>", "The number of trials by JCGM 101 7.9", kPlain, C::trials_switch<&Settings::adaptive>},
-    {"CALCulate:MCARlo:SEED", kBoth, "<a>,<b>,<c>,<d>", "Start of the random numbers", kPlain, C::seed},
-    {"CALCulate:MCARlo:GENerator", kBoth, "WH2006|WH1982", "Generator of Wichmann and Hill", kPlain, C::choice<Generator, &Settings::generator, kGeneratorWords, Change::kTrials>},
-    {"CALCulate:MCARlo:PROBability", kBoth, "<p>", "Coverage probability of the intervals", kQueryLimits, C::number<&Settings::probability, kProbability, Change::kTrials>},
-    {"CALCulate:MCARlo:DISTribution", kBoth, "BOX|NORMal", "Uniform within +-u, or normal with the fit's covariance", kPlain, C::choice<Distribution, &Settings::distribution, kDistributionWords, Change::kTrials>},
-    {"CALCulate:MCARlo:BIRGe", kBoth, "<on>", "Uncertainties times the fit's Birge ratio, if above 1", kPlain, C::trials_switch<&Settings::birge>},
+};
+
+constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
     {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report},
@@ -206,12 +169,44 @@ constexpr scpi::Command<Instrument> kCommands[] = {
 };
 // clang-format on
 
-static_assert(scpi::first_bad_row(kCommands) == sizeof kCommands / sizeof kCommands[0]);
+template <std::size_t kSize>
+constexpr std::size_t size_of(const scpi::Command<Instrument> (&/*part*/)[kSize]) noexcept {
+  return kSize;
+}
+
+// In the order of the list in the README. The settings come from their rows, group by group.
+constexpr auto all_commands() noexcept {
+  constexpr std::size_t kRoom = size_of(kCommon) + size_of(kWork) + size_of(kEnergy) +
+                                size_of(kUncertainty) + count_commands(kSettingRows) +
+                                count_commands(kSweepSettingRows);
+  CommandTable<kRoom> table;
+  table.add(kCommon);
+  for (const SettingGroup group :
+       {SettingGroup::kRepeats, SettingGroup::kRest, SettingGroup::kDrive, SettingGroup::kChain}) {
+    table.add_settings<SettingsOf::kSweep>(kSweepSettingRows, group);
+  }
+  table.add(kWork);
+  for (const SettingGroup group : {SettingGroup::kFilter, SettingGroup::kSignal}) {
+    table.add_settings<SettingsOf::kEvaluation>(kSettingRows, group);
+  }
+  table.add(kEnergy);
+  for (const SettingGroup group : {SettingGroup::kTrials, SettingGroup::kRandom,
+                                   SettingGroup::kCoverage, SettingGroup::kTrend}) {
+    table.add_settings<SettingsOf::kEvaluation>(kSettingRows, group);
+  }
+  table.add(kUncertainty);
+  return table;
+}
+
+constexpr auto kCommands = all_commands();
+static_assert(kCommands.count == size_of(kCommands.rows),
+              "a setting of a group that is not listed");
+static_assert(scpi::first_bad_row(kCommands.rows) == kCommands.count);
 
 }  // namespace
 
 scpi::Table<Instrument> Instrument::commands() noexcept {
-  return scpi::Table<Instrument>(kCommands);
+  return scpi::Table<Instrument>(kCommands.rows);
 }
 
 }  // namespace emax::app

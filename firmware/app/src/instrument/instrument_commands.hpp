@@ -24,63 +24,22 @@ struct InstrumentCommands {
   // Settings
 
   /// Takes new settings over if they can be had together and nothing that runs needs the old ones.
-  static void take(Instrument& i, Call& call, const Settings& next, Change change) noexcept;
+  static void take(Instrument& i, Call& call, const Settings& next) noexcept;
   static void take(Instrument& i, Call& call, const SweepSettings& next) noexcept;
 
-  template <double Settings::*kMember, const NumberRule& kRule, Change kChange>
-  static void number(Instrument& i, Call& call) noexcept {
-    Settings next = i.settings_;
-    if (call.setting(kRule, next.*kMember, next.*kMember) &&
-        next.*kMember != i.settings_.*kMember) {
-      take(i, call, next, kChange);
-    }
+  /// The command of a row of kSettingRows or kSweepSettingRows: the index counts those that have
+  /// one.
+  static void setting(Instrument& i, Call& call, std::size_t index) noexcept;
+  static void sweep_setting(Instrument& i, Call& call, std::size_t index) noexcept;
+  template <std::size_t kIndex>
+  static void setting(Instrument& i, Call& call) noexcept {
+    setting(i, call, kIndex);
+  }
+  template <std::size_t kIndex>
+  static void sweep_setting(Instrument& i, Call& call) noexcept {
+    sweep_setting(i, call, kIndex);
   }
 
-  template <typename Integer, Integer Settings::*kMember, const IntegerRule& kRule, Change kChange>
-  static void integer(Instrument& i, Call& call) noexcept {
-    std::int64_t value = 0;
-    if (!call.integer_setting(kRule, i.settings_.*kMember, value) ||
-        value == i.settings_.*kMember) {
-      return;
-    }
-    Settings next = i.settings_;
-    next.*kMember = static_cast<Integer>(value);
-    take(i, call, next, kChange);
-  }
-
-  template <bool Settings::*kMember>
-  static void trials_switch(Instrument& i, Call& call) noexcept {
-    Settings next = i.settings_;
-    if (call.boolean_setting(next.*kMember, next.*kMember) &&
-        next.*kMember != i.settings_.*kMember) {
-      take(i, call, next, Change::kTrials);
-    }
-  }
-
-  /// Enumerators count from 0 in the order of the words.
-  template <typename Enum, Enum Settings::*kMember, const char* const (&kWords)[2], Change kChange>
-  static void choice(Instrument& i, Call& call) noexcept {
-    std::size_t index = 0;
-    const auto current = static_cast<std::size_t>(i.settings_.*kMember);
-    if (!call.choice_setting(scpi::Words(kWords), current, index) || index == current) {
-      return;
-    }
-    Settings next = i.settings_;
-    next.*kMember = static_cast<Enum>(index);
-    take(i, call, next, kChange);
-  }
-
-  template <double SweepSettings::*kMember, const NumberRule& kRule>
-  static void sweep_number(Instrument& i, Call& call) noexcept {
-    sweep_number(i, call, kMember, kRule);
-  }
-  /// The default is that of the board.
-  static void sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
-                           NumberRule rule) noexcept;
-
-  static void sweep_cycles(Instrument& i, Call& call) noexcept;
-  static void filter_gain(Instrument& i, Call& call) noexcept;
-  static void energy_limit(Instrument& i, Call& call) noexcept;
   static void seed(Instrument& i, Call& call) noexcept;
   static void reference(Instrument& i, Call& call) noexcept;
   static void sweep_frequencies(Instrument& i, Call& call) noexcept;

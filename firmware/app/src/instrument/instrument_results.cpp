@@ -424,7 +424,7 @@ bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
     return false;
   }
   if (next.trend_s != i.settings_.trend_s || next.trend_count != i.settings_.trend_count) {
-    take(i, call, next, Change::kTrend);
+    take(i, call, next);
   }
   return !call.failed();
 }

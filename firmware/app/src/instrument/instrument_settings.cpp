@@ -1,7 +1,11 @@
 // The commands that set something and answer what is set.
+#include <array>
 #include <limits>
 
+#include "emax/app/settings/setting_field.hpp"
+
 #include "instrument_commands.hpp"
+#include "setting_commands.hpp"
 
 namespace emax::app {
 namespace {
@@ -10,103 +14,242 @@ using scpi::IntegerRule;
 using scpi::NumberRule;
 
 constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMaxPercent = 50.0;
 constexpr std::int64_t kMaxSeed = 4294967295;
-constexpr NumberRule kGain = {0.0, kMaxGain, kNoDefault, nullptr};
-constexpr NumberRule kLimit = {kMinLimit_mps2, kMaxLimit_mps2, kNoDefault,
-                               scpi::kMetrePerSecondSquared};
 constexpr NumberRule kFrequency = {0.1, 1e9, kNoDefault, scpi::kHertz};
-constexpr std::int64_t kMaxCycles = 1000;
-constexpr const char* kGainWords[] = {"AUTO", "TRACk"};
-constexpr const char* kLimitWords[] = {"AUTO"};
+constexpr auto kCommands = setting_commands<count_commands(kSettingRows)>(kSettingRows);
+constexpr auto kSweepCommands =
+    setting_commands<count_commands(kSweepSettingRows)>(kSweepSettingRows);
+
+/// A new value: a number, a byte, or both.
+struct SettingValue {
+  double number = 0.0;
+  std::uint8_t byte = 0;
+};
+
+// A setting whose command is executed. It reads the value alone: a copy of all settings would be on
+// the stack while text becomes a number, which takes most of it.
+class SettingCall {
+ public:
+  /// @param[in] current The structure with the value that is set.
+  SettingCall(scpi::Call& call, const SettingCommand& command, const SettingField& field,
+              const void* current) noexcept
+      : call_(call), command_(command), field_(field), current_(current) {}
+
+  /// @returns True if there is a new value. A query is answered.
+  bool take(double by_default, SettingValue& value) noexcept {
+    value.number = number_in(field_, current_);
+    switch (field_.kind) {
+      case SettingKind::kNumber:
+        return call_.setting(rule(by_default), value.number, value.number);
+      case SettingKind::kWhole:
+        return take_whole(by_default, value.number);
+      case SettingKind::kSwitch:
+        return take_switch(value.byte);
+      case SettingKind::kChoice:
+        return take_choice(value.byte);
+      case SettingKind::kNumberOrWord:
+        return take_number_or_word(value);
+      case SettingKind::kNumbers:
+      case SettingKind::kMoreNumbers:
+      case SettingKind::kWholes:
+        break;  // Lists have handlers of their own.
+    }
+    return false;
+  }
+
+ private:
+  NumberRule rule(double by_default) const noexcept {
+    return {command_.min, command_.max, by_default, command_.unit};
+  }
+  scpi::Words words() const noexcept { return {command_.words, command_.word_count}; }
+
+  bool take_whole(double by_default, double& value) noexcept {
+    const IntegerRule rule = {static_cast<std::int64_t>(command_.min),
+                              static_cast<std::int64_t>(command_.max),
+                              static_cast<std::int64_t>(by_default)};
+    std::int64_t number = 0;
+    if (!call_.integer_setting(rule, static_cast<std::int64_t>(value), number)) {
+      return false;
+    }
+    value = static_cast<double>(number);
+    return true;
+  }
+
+  bool take_switch(std::uint8_t& byte) noexcept {
+    bool is_on = false;
+    const bool is_new = call_.boolean_setting(member_at<bool>(current_, field_.offset), is_on);
+    byte = is_on ? 1 : 0;
+    return is_new;
+  }
+
+  bool take_choice(std::uint8_t& byte) noexcept {
+    std::size_t index = 0;
+    const std::size_t current = member_at<std::uint8_t>(current_, field_.offset);
+    const bool is_new = call_.choice_setting(words(), current, index);
+    byte = static_cast<std::uint8_t>(index);
+    return is_new;
+  }
+
+  // The byte counts words, and the number as if it were one of them.
+  bool take_number_or_word(SettingValue& value) noexcept {
+    const std::size_t number_mode = field_.number_mode;
+    const std::size_t mode = member_at<std::uint8_t>(current_, field_.beside);
+    scpi::NumberOrWord given{value.number, command_.word_count};
+    if (mode != number_mode) {
+      given.word = mode < number_mode ? mode : mode - 1;
+    }
+    if (!call_.number_or_word_setting(rule(kNoDefault), words(), given, given)) {
+      return false;
+    }
+    std::size_t byte = number_mode;
+    if (given.word < command_.word_count) {
+      byte = given.word < number_mode ? given.word : given.word + 1;
+    }
+    value = {given.number, static_cast<std::uint8_t>(byte)};
+    return true;
+  }
+
+  scpi::Call& call_;
+  const SettingCommand& command_;
+  const SettingField& field_;
+  const void* current_;
+};
+
+void store(const SettingField& field, const SettingValue& value, void* settings) noexcept {
+  switch (field.kind) {
+    case SettingKind::kNumberOrWord:
+      member_at<std::uint8_t>(settings, field.beside) = value.byte;
+      [[fallthrough]];
+    case SettingKind::kNumber:
+      member_at<double>(settings, field.offset) = value.number;
+      return;
+    case SettingKind::kWhole:
+      member_at<std::uint32_t>(settings, field.offset) = static_cast<std::uint32_t>(value.number);
+      return;
+    case SettingKind::kSwitch:
+    case SettingKind::kChoice:
+      member_at<std::uint8_t>(settings, field.offset) = value.byte;
+      return;
+    case SettingKind::kNumbers:
+    case SettingKind::kMoreNumbers:
+    case SettingKind::kWholes:
+      return;
+  }
+}
+
+// These are out of line for the sake of the stack: each holds the settings of a sweep.
+[[gnu::noinline]] double default_number(const Instrument& i, const SettingField& field) noexcept {
+  const SweepSettings by_default = i.default_sweep();
+  return number_in(field, &by_default);
+}
+
+struct ReferenceValue {
+  double sensitivity = 0.0;
+  double expanded_percent = 0.0;
+};
+
+[[gnu::noinline]] ReferenceValue default_reference(const Instrument& i) noexcept {
+  const ReferenceCalibration reference = i.default_sweep().reference;
+  return {reference.sensitivity[0], reference.expanded_percent};
+}
+
+template <typename Change>
+[[gnu::noinline]] void change_sweep(Instrument& i, scpi::Call& call,
+                                    const Change& change) noexcept {
+  SweepSettings next = i.sweep_settings();
+  change(next);
+  InstrumentCommands::take(i, call, next);
+}
 
 }  // namespace
 
-void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next,
-                              Change change) noexcept {
-  if (const Refusal refusal = i.conflict_with(change)) {
-    call.fail(refusal.code, refusal.words);
-    return;
+Instrument::Refusal Instrument::take(const Settings& next) noexcept {
+  if (const Refusal refusal = conflict_with(Change::kEnergy)) {
+    return refusal;
   }
   const SettingsError error = check(next);
   if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
-    return;
+    return {scpi::ErrorCode::kSettingsConflict, error.expectation, error.setting};
   }
-  const bool has_other_numbers =
-      next.seed != i.settings_.seed || next.generator != i.settings_.generator;
-  i.settings_ = next;
-  i.invalidate(change);
+  const bool has_other_numbers = !is_same_random(next, settings_);
+  if (!is_same_energy(next, settings_)) {
+    invalidate(Change::kEnergy);
+  }
+  if (!is_same_trials(next, settings_)) {
+    invalidate(Change::kTrials);
+  }
+  if (!is_same_trend(next, settings_)) {
+    invalidate(Change::kTrend);
+  }
+  settings_ = next;
   if (has_other_numbers) {
-    i.seed_generator();
+    seed_generator();
+  }
+  return {};
+}
+
+Instrument::Refusal Instrument::take(const SweepSettings& next) noexcept {
+  if (const Refusal refusal = conflict_with(Change::kSweep)) {
+    return refusal;
+  }
+  const SettingsError error = check(next, ports_.analog.format());
+  if (error.setting != nullptr) {
+    return {scpi::ErrorCode::kSettingsConflict, error.expectation, error.setting};
+  }
+  sweep_settings_ = next;
+  return {};
+}
+
+void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next) noexcept {
+  if (const Refusal refusal = i.take(next)) {
+    call.fail(refusal.code, refusal.words, refusal.subject);
   }
 }
 
 void InstrumentCommands::take(Instrument& i, Call& call, const SweepSettings& next) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kSweep)) {
-    call.fail(refusal.code, refusal.words);
-    return;
+  if (const Refusal refusal = i.take(next)) {
+    call.fail(refusal.code, refusal.words, refusal.subject);
   }
-  const SettingsError error = check(next, i.ports_.analog.format());
-  if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
-    return;
-  }
-  i.sweep_settings_ = next;
 }
 
-void InstrumentCommands::sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
-                                      NumberRule rule) noexcept {
-  SweepSettings next = i.default_sweep();
-  rule.by_default = next.*member;
-  next = i.sweep_settings_;
-  if (call.setting(rule, next.*member, next.*member)) {
+void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) noexcept {
+  const SettingCommand& command = kCommands[index];
+  const SettingField& field = fields_of(i.settings())[command.field];
+  if (field.kind == SettingKind::kWholes) {
+    seed(i, call);
+    return;
+  }
+  SettingValue value;
+  if (!SettingCall(call, command, field, &i.settings())
+           .take(number_in(field, &kDefaultSettings), value)) {
+    return;
+  }
+  Settings next = i.settings();
+  store(field, value, &next);
+  // What is set already may be set again while it is in use, if it is a plain value.
+  if (field.kind == SettingKind::kNumberOrWord || !is_same(field, &next, &i.settings())) {
     take(i, call, next);
   }
 }
 
-void InstrumentCommands::sweep_cycles(Instrument& i, Call& call) noexcept {
-  SweepSettings next = i.default_sweep();
-  const IntegerRule rule = {1, kMaxCycles, next.cycles};
-  next = i.sweep_settings_;
-  std::int64_t value = 0;
-  if (call.integer_setting(rule, next.cycles, value)) {
-    next.cycles = static_cast<std::uint32_t>(value);
-    take(i, call, next);
-  }
-}
-
-void InstrumentCommands::filter_gain(Instrument& i, Call& call) noexcept {
-  constexpr GainMode kModes[] = {GainMode::kAuto, GainMode::kTrack, GainMode::kFixed};
-  const GainMode mode = i.settings_.gain_mode;
-  const std::size_t word = mode == GainMode::kAuto ? 0 : mode == GainMode::kTrack ? 1 : 2;
-  scpi::NumberOrWord gain{i.settings_.gain, word};
-  if (call.number_or_word_setting(kGain, scpi::Words(kGainWords), gain, gain)) {
-    Settings next = i.settings_;
-    next.gain_mode = kModes[gain.word];
-    next.gain = gain.number;
-    take(i, call, next, Change::kEnergy);
-  }
-}
-
-void InstrumentCommands::energy_limit(Instrument& i, Call& call) noexcept {
-  scpi::NumberOrWord limit{i.settings_.limit_mps2, i.settings_.limit_is_auto ? 0U : 1U};
-  if (call.number_or_word_setting(kLimit, scpi::Words(kLimitWords), limit, limit)) {
-    Settings next = i.settings_;
-    next.limit_is_auto = limit.word == 0;
-    next.limit_mps2 = limit.number;
-    take(i, call, next, Change::kEnergy);
+void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t index) noexcept {
+  const SettingCommand& command = kSweepCommands[index];
+  const SettingField& field = fields_of(i.sweep_settings())[command.field];
+  SettingValue value;
+  if (SettingCall(call, command, field, &i.sweep_settings())
+          .take(default_number(i, field), value)) {
+    change_sweep(i, call, [&](SweepSettings& next) noexcept { store(field, value, &next); });
   }
 }
 
 void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
   if (call.is_query()) {
-    for (const std::uint32_t part : i.settings_.seed) {
+    for (const std::uint32_t part : i.settings().seed) {
       call.answer().integer(part);
     }
     return;
   }
-  Settings next = i.settings_;
+  Settings next = i.settings();
   for (std::uint32_t& part : next.seed) {
     std::int64_t value = 0;
     if (!call.integer({1, kMaxSeed, 1}, value)) {
@@ -114,32 +257,35 @@ void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
     }
     part = static_cast<std::uint32_t>(value);
   }
-  take(i, call, next, Change::kTrials);
+  take(i, call, next);
   if (!call.failed()) {
     i.seed_generator();
   }
 }
 
 void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
-  const ReferenceCalibration& current = i.sweep_settings_.reference;
+  const ReferenceCalibration& current = i.sweep_settings().reference;
   if (call.is_query()) {
     call.answer().number(current.sensitivity[0]).number(current.expanded_percent);
     return;
   }
-  SweepSettings next = i.default_sweep();
-  const NumberRule sensitivity = {1e-9, 1e9, next.reference.sensitivity[0], nullptr};
-  const NumberRule percent = {0.0, kMaxPercent, next.reference.expanded_percent, scpi::kPercent};
-  next = i.sweep_settings_;
-  if (!call.number(sensitivity, next.reference.sensitivity[0]) ||
-      (call.has_more() && !call.number(percent, next.reference.expanded_percent))) {
+  const ReferenceValue by_default = default_reference(i);
+  ReferenceValue value = {0.0, current.expanded_percent};
+  const NumberRule sensitivity = {kSmallest, kLargest, by_default.sensitivity, nullptr};
+  const NumberRule percent = {0.0, kMaxPercent, by_default.expanded_percent, scpi::kPercent};
+  if (!call.number(sensitivity, value.sensitivity) ||
+      (call.has_more() && !call.number(percent, value.expanded_percent))) {
     return;
   }
-  next.reference.count = 1;
-  take(i, call, next);
+  change_sweep(i, call, [&](SweepSettings& next) noexcept {
+    next.reference.sensitivity[0] = value.sensitivity;
+    next.reference.expanded_percent = value.expanded_percent;
+    next.reference.count = 1;
+  });
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
-  const SweepSettings& current = i.sweep_settings_;
+  const SweepSettings& current = i.sweep_settings();
   if (call.stage() == Call::Stage::kItem) {
     call.answer().number(current.frequency_hz[call.item()]);
     return;
@@ -148,20 +294,22 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
     call.answer_items(current.frequency_count);
     return;
   }
-  SweepSettings next = current;
-  if (call.numbers(kFrequency, Span<double>(next.frequency_hz), next.frequency_count)) {
-    take(i, call, next);
+  std::array<double, kMaxPoints> frequency_hz = {};
+  std::size_t count = 0;
+  if (call.numbers(kFrequency, Span<double>(frequency_hz), count)) {
+    change_sweep(i, call, [&](SweepSettings& next) noexcept {
+      next.frequency_hz = frequency_hz;
+      next.frequency_count = count;
+    });
   }
 }
 
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kSweep)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
   const SweepSettings by_default = i.default_sweep();
-  i.sweep_settings_.frequency_hz = by_default.frequency_hz;
-  i.sweep_settings_.frequency_count = by_default.frequency_count;
+  change_sweep(i, call, [&](SweepSettings& next) noexcept {
+    next.frequency_hz = by_default.frequency_hz;
+    next.frequency_count = by_default.frequency_count;
+  });
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {

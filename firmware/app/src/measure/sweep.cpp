@@ -157,7 +157,7 @@ void Sweep::watch(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
     return;
   }
   const double peak_v = reference_peak_v(work) - kNoisePeak * inputs_.silent_reference.noise_v;
-  if (full_scale || acceleration_of(peak_v, work) > settings_.limit_mps2) {
+  if (full_scale || acceleration_of(peak_v, work) > settings_.acceleration_limit_mps2) {
     lower_level(stream, work);
   }
 }
@@ -236,7 +236,8 @@ void Sweep::end_silence(hal::AnalogStream& stream, SweepWorkspace& work) noexcep
 
 double Sweep::aim_mps2(const SweepWorkspace& work) const noexcept {
   const double wanted = work.level_scale_ * settings_.level_mps2;
-  const double most = (work.target_.is_close ? kLimitShare : kCautiousShare) * settings_.limit_mps2;
+  const double most =
+      (work.target_.is_close ? kLimitShare : kCautiousShare) * settings_.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
 }
 

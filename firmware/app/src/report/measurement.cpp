@@ -55,8 +55,8 @@ void write_settings(const Measurement& measurement, ReportWriter& out) noexcept 
   out.general(measurement.format.sample_rate_hz, 10).text(" samples per second").line();
   out.label("Level").general(settings.level_mps2, 6).text(" m/s^2");
   out.and_g(settings.level_mps2, 6).text(" peak, never above ");
-  out.general(settings.limit_mps2, 6).text(" m/s^2");
-  out.and_g(settings.limit_mps2, 6).line();
+  out.general(settings.acceleration_limit_mps2, 6).text(" m/s^2");
+  out.and_g(settings.acceleration_limit_mps2, 6).line();
   out.label("Drive").text("never above ").general(settings.drive_limit_v, 6).text(" V and ");
   out.general(settings.slew_v_per_s, 6).text(" V/s").line();
   out.label("Record").integer(settings.repeats).text(" repeats of at least ");

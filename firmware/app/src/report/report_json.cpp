@@ -160,7 +160,7 @@ void write_bench(const Measurement* measurement, const Evaluation* refused,
   json.integer("frequencies", settings.frequency_count);
   json.number("sample_rate", measurement->format.sample_rate_hz);
   json.number("level", settings.level_mps2);
-  json.number("acceleration_limit", settings.limit_mps2);
+  json.number("acceleration_limit", settings.acceleration_limit_mps2);
   json.number("drive_limit", settings.drive_limit_v);
   json.number("slew", settings.slew_v_per_s);
   json.number("reference_percent", settings.reference.expanded_percent);

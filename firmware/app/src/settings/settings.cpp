@@ -1,10 +1,9 @@
-// The range of each setting, in numbers and in words.
+// Checks and comparisons of the settings of an evaluation: ranges by the rows, here what limits one
+// another.
 #include "emax/app/settings/settings.hpp"
 
+#include "emax/app/settings/settings_rows.hpp"
 #include "emax/base/elementary.hpp"
-#include "emax/energy/fixed_point.hpp"
-#include "emax/model/butterworth.hpp"
-#include "emax/uncertainty/monte_carlo.hpp"
 
 namespace emax::app {
 namespace {
@@ -15,59 +14,19 @@ constexpr double kMaxAdaptiveProbability = 0.99999;
 constexpr std::uint32_t kAdaptiveBlock = 10000;
 constexpr std::uint32_t kModuli[] = {2147483579, 2147483543, 2147483423, 2147483123};
 
-// False for a value that is not a number, too.
-constexpr bool is_within(double value, double low, double high) noexcept {
-  return value >= low && value <= high;
-}
-
 constexpr bool is_duration(double value_s) noexcept {
   return value_s > 0.0 && value_s <= kMaxDuration_s;
 }
 
-SettingsError check_filter(const Settings& settings) noexcept {
-  if (settings.filter_order < 1 || settings.filter_order > kMaxFilterOrder) {
-    return {"order", "a whole number from 1 to 15"};
-  }
-  if (!is_within(settings.cutoff_hz, kMinFrequency_hz, kMaxFrequency_hz)) {
-    return {"cutoff", "from 0.001 to 1e9 Hz"};
-  }
-  if (settings.gain_mode == GainMode::kFixed && !is_within(settings.gain, 0.0, kMaxGain)) {
-    return {"gain", "'auto', 'track', or from 0 to 1e9 V/(m/s^2)"};
-  }
-  return {};
-}
-
-SettingsError check_signal(const Settings& settings) noexcept {
-  if (!is_duration(settings.duration_s)) {
-    return {"time", "more than 0 and at most 1000 s"};
-  }
-  if (!settings.limit_is_auto && !is_within(settings.limit_mps2, kMinLimit_mps2, kMaxLimit_mps2)) {
-    return {"limit", "from 1e-9 to 1e9 m/s^2"};
-  }
-  return {};
-}
-
-SettingsError check_paper(const Settings& settings) noexcept {
-  if (!is_duration(settings.step_s)) {
-    return {"step", "more than 0 and at most 1000 s"};
-  }
+SettingsError check_step(const Settings& settings) noexcept {
   if (settings.method == Method::kPaper && settings.step_s > settings.duration_s) {
     return {"step", "at most the time T"};
   }
-  if (settings.iterations < 1 || settings.iterations > kMaxIterations) {
-    return {"iterations", "a whole number from 1 to 1000"};
-  }
   return {};
 }
 
-SettingsError check_trials(const Settings& settings) noexcept {
-  if (settings.trials < kMinTrials || settings.trials > kMaxTrials) {
-    return {"trials", "a whole number from 1000 to 1000000000"};
-  }
+SettingsError check_probability(const Settings& settings) noexcept {
   const double p = settings.probability;
-  if (!(p > 0.0) || !(p < 1.0)) {
-    return {"probability", "more than 0 and less than 1"};
-  }
   if (settings.adaptive && p > kMaxAdaptiveProbability) {
     return {"probability", "at most 0.99999 where the number of trials is adaptive"};
   }
@@ -119,19 +78,71 @@ SettingsError check_trend(const Settings& settings) noexcept {
   return {};
 }
 
+constexpr std::size_t row(const char* name) noexcept { return row_of(kSettingRows, name); }
+
+/// What comes behind the range of a row.
+SettingsError own_check(std::size_t index, const Settings& settings) noexcept {
+  switch (index) {
+    case row("step"):
+      return check_step(settings);
+    case row("probability"):
+      return check_probability(settings);
+    case row("seed"):
+      return check_seed(settings);
+    case row("trend"):
+      return check_trend(settings);
+    default:
+      return {};
+  }
+}
+
+using Concerns = std::uint32_t;
+constexpr Concerns bit(Concern concern) noexcept {
+  return Concerns{1} << static_cast<unsigned>(concern);
+}
+
+/// Whether all that these concerns depend on is the same.
+bool is_same(const Settings& a, const Settings& b, Concerns concerns) noexcept {
+  for (const SettingField& field : fields_of(a)) {
+    if ((concerns & bit(field.concern)) != 0 && !is_same(field, &a, &b)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 SettingsError check(const Settings& settings) noexcept {
-  using Check = SettingsError (*)(const Settings&) noexcept;
-  constexpr Check kChecks[] = {check_filter, check_signal, check_paper,
-                               check_trials, check_seed,   check_trend};
-  for (const Check one : kChecks) {
-    const SettingsError error = one(settings);
+  const Span<const SettingField> fields = fields_of(settings);
+  for (std::size_t index = 0; index < fields.size(); ++index) {
+    if (!is_in_range(fields[index], &settings)) {
+      return {fields[index].name, fields[index].expectation};
+    }
+    const SettingsError error = own_check(index, settings);
     if (error.setting != nullptr) {
       return error;
     }
   }
   return {};
+}
+
+bool is_same_energy(const Settings& a, const Settings& b) noexcept {
+  const Concerns paper = a.method == Method::kPaper ? bit(Concern::kPaper) : 0;
+  return is_same(a, b, bit(Concern::kEnergy) | paper);
+}
+
+bool is_same_random(const Settings& a, const Settings& b) noexcept {
+  return is_same(a, b, bit(Concern::kRandom));
+}
+
+bool is_same_trials(const Settings& a, const Settings& b) noexcept {
+  const Concerns count = a.adaptive ? 0 : bit(Concern::kTrialCount);
+  return is_same(a, b, bit(Concern::kRandom) | bit(Concern::kTrials) | count);
+}
+
+bool is_same_trend(const Settings& a, const Settings& b) noexcept {
+  return is_same(a, b, bit(Concern::kTrend));
 }
 
 }  // namespace emax::app

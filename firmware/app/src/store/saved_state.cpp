@@ -1,9 +1,10 @@
-// One list of fields per structure, which writing and reading both go through.
+// Writing and reading go through the same fields: those of the settings are their rows.
 #include "emax/app/store/saved_state.hpp"
 
 #include <algorithm>
 #include <limits>
 
+#include "emax/app/settings/setting_field.hpp"
 #include "emax/base/elementary.hpp"
 
 namespace emax::app {
@@ -12,6 +13,9 @@ namespace {
 // "ES" and "EI" with the version of what follows. A change of what follows needs a new version.
 constexpr std::uint32_t kSettingsVersion1 = 0x00015345;
 constexpr std::uint32_t kIdentificationVersion1 = 0x00014945;
+static_assert(kMaxSavedSettingsBytes ==
+                  220 + 8 * kMaxTrendPoints + 8 * kMaxPoints + 16 * kMaxReferencePoints,
+              "the settings have changed: they need a new version, and their new size here");
 
 // The root of a square, or the square of a root, is off by this at most.
 constexpr double kRounding = 1e-15;
@@ -26,8 +30,7 @@ class Writer {
 
   void number(double value) noexcept;
   void whole(std::uint32_t value) noexcept { put(value, sizeof(value)); }
-  void whole(int value) noexcept { whole(static_cast<std::uint32_t>(value)); }
-  void flag(bool value) noexcept { put(value ? 1 : 0, 1); }
+  void byte(std::uint8_t value, std::size_t /*last*/) noexcept { put(value, 1); }
   template <typename Enum>
   void choice(Enum value, Enum /*last*/) noexcept {
     put(static_cast<std::uint8_t>(value), 1);
@@ -36,8 +39,7 @@ class Writer {
     is_good_ = is_good_ && value <= most;
     whole(static_cast<std::uint32_t>(value));
   }
-  template <typename Table>
-  void numbers(const Table& table, std::size_t count) noexcept {
+  void numbers(Span<const double> table, std::size_t count) noexcept {
     for (std::size_t i = 0; is_good_ && i < count; ++i) {
       number(table[i]);
     }
@@ -76,16 +78,10 @@ class Reader {
   void whole(std::uint32_t& value) noexcept {
     value = static_cast<std::uint32_t>(taken(sizeof(value)));
   }
-  void whole(int& value) noexcept {
-    std::uint32_t bits = 0;
-    whole(bits);
-    is_good_ = is_good_ && bits <= std::uint32_t{std::numeric_limits<int>::max()};
-    value = static_cast<int>(bits);
-  }
-  void flag(bool& value) noexcept {
+  void byte(std::uint8_t& value, std::size_t last) noexcept {
     const std::uint64_t bits = taken(1);
-    is_good_ = is_good_ && bits <= 1;
-    value = bits == 1;
+    is_good_ = is_good_ && bits <= last;
+    value = is_good_ ? static_cast<std::uint8_t>(bits) : std::uint8_t{0};
   }
   template <typename Enum>
   void choice(Enum& value, Enum last) noexcept {
@@ -100,8 +96,7 @@ class Reader {
     value = is_good_ ? bits : 0;
   }
   // Whatever is behind them is zero, so that nothing of before remains.
-  template <typename Table>
-  void numbers(Table& table, std::size_t count) noexcept {
+  void numbers(Span<double> table, std::size_t count) noexcept {
     for (double& entry : table) {
       entry = 0.0;
       if (count > 0) {
@@ -133,70 +128,41 @@ class Reader {
   is_good_ = is_good_ && is_finite(value);
 }
 
-// The names in brackets are all members in their order: a new one does not compile until it is
-// listed here.
+// AnySettings is `void` to read, `const void` to write. To go by the type of the table would double
+// the code.
 template <typename AnySettings, typename Fields>
-void go_through_settings(AnySettings& settings, Fields& fields) noexcept {
-  auto& [filter_order, cutoff_hz, gain_mode, gain, duration_s, limit_is_auto, limit_mps2, criterion,
-         method, step_s, iterations, trials, adaptive, probability, distribution, birge, seed,
-         generator, trend_s, trend_count] = settings;
-  fields.whole(filter_order);
-  fields.number(cutoff_hz);
-  fields.choice(gain_mode, GainMode::kTrack);
-  fields.number(gain);
-  fields.number(duration_s);
-  fields.flag(limit_is_auto);
-  fields.number(limit_mps2);
-  fields.choice(criterion, Criterion::kEnergyDifference);
-  fields.choice(method, Method::kPaper);
-  fields.number(step_s);
-  fields.whole(iterations);
-  fields.whole(trials);
-  fields.flag(adaptive);
-  fields.number(probability);
-  fields.choice(distribution, Distribution::kNormal);
-  fields.flag(birge);
-  for (auto& part : seed) {
-    fields.whole(part);
+void go_through(const SettingField& field, AnySettings* settings, Fields& fields) noexcept {
+  switch (field.kind) {
+    case SettingKind::kNumber:
+      return fields.number(member_at<double>(settings, field.offset));
+    case SettingKind::kWhole:
+      return fields.whole(member_at<std::uint32_t>(settings, field.offset));
+    case SettingKind::kSwitch:
+    case SettingKind::kChoice:
+      return fields.byte(member_at<std::uint8_t>(settings, field.offset), field.last);
+    case SettingKind::kNumberOrWord:
+      fields.byte(member_at<std::uint8_t>(settings, field.beside), field.last);
+      return fields.number(member_at<double>(settings, field.offset));
+    case SettingKind::kNumbers:
+      fields.count(member_at<std::size_t>(settings, field.beside), field.last);
+      [[fallthrough]];
+    case SettingKind::kMoreNumbers:
+      return fields.numbers({&member_at<double>(settings, field.offset), field.last},
+                            member_at<std::size_t>(settings, field.beside));
+    case SettingKind::kWholes:
+      for (std::size_t i = 0; i < field.last; ++i) {
+        fields.whole(member_at<std::uint32_t>(settings, field.offset + i * sizeof(std::uint32_t)));
+      }
+      return;
   }
-  fields.choice(generator, Generator::k1982);
-  fields.count(trend_count, kMaxTrendPoints);
-  fields.numbers(trend_s, trend_count);
-}
-
-template <typename AnyCalibration, typename Fields>
-void go_through_reference(AnyCalibration& reference, Fields& fields) noexcept {
-  auto& [frequency_hz, sensitivity, count, expanded_percent] = reference;
-  fields.count(count, kMaxReferencePoints);
-  fields.numbers(frequency_hz, count);
-  fields.numbers(sensitivity, count);
-  fields.number(expanded_percent);
 }
 
 template <typename AnySettings, typename Fields>
-void go_through_sweep(AnySettings& settings, Fields& fields) noexcept {
-  auto& [frequency_hz, frequency_count, level_mps2, limit_mps2, drive_limit_v, slew_v_per_s,
-         settle_s, cycles, repeat_s, repeats, reference, reference_gain, device_gain,
-         gain_expanded_percent, mounting_expanded_percent, skew_s, check_hz, expected_sensitivity] =
-      settings;
-  fields.count(frequency_count, kMaxPoints);
-  fields.numbers(frequency_hz, frequency_count);
-  fields.number(level_mps2);
-  fields.number(limit_mps2);
-  fields.number(drive_limit_v);
-  fields.number(slew_v_per_s);
-  fields.number(settle_s);
-  fields.whole(cycles);
-  fields.number(repeat_s);
-  fields.whole(repeats);
-  go_through_reference(reference, fields);
-  fields.number(reference_gain);
-  fields.number(device_gain);
-  fields.number(gain_expanded_percent);
-  fields.number(mounting_expanded_percent);
-  fields.number(skew_s);
-  fields.number(check_hz);
-  fields.number(expected_sensitivity);
+void go_through_all(AnySettings& settings, Fields& fields) noexcept {
+  for (const SettingField& field : fields_of(settings)) {
+    using Any = std::conditional_t<std::is_const_v<AnySettings>, const void, void>;
+    go_through(field, static_cast<Any*>(&settings), fields);
+  }
 }
 
 template <typename AnyIdentification, typename Fields>
@@ -276,8 +242,8 @@ std::size_t encode(const Settings& settings, const SweepSettings& sweep,
                    Span<std::uint8_t> bytes) noexcept {
   Writer writer(bytes);
   writer.whole(kSettingsVersion1);
-  go_through_settings(settings, writer);
-  go_through_sweep(sweep, writer);
+  go_through_all(settings, writer);
+  go_through_all(sweep, writer);
   return writer.size();
 }
 
@@ -296,8 +262,8 @@ Status decode(Span<const std::uint8_t> bytes, const hal::StreamFormat& format,
   if (version != kSettingsVersion1) {
     return Status::kUnknownRecord;
   }
-  go_through_settings(scratch.settings, reader);
-  go_through_sweep(scratch.sweep, reader);
+  go_through_all(scratch.settings, reader);
+  go_through_all(scratch.sweep, reader);
   if (!reader.is_good() || !reader.is_at_end() || check(scratch.settings).setting != nullptr ||
       check(scratch.sweep, format).setting != nullptr) {
     return Status::kUnknownRecord;

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/app/base/in_place.hpp"
 #include "emax/app/base/text_writer.hpp"
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/measure/sweep.hpp"
@@ -31,7 +30,7 @@ constexpr int kFault = 3;
 struct Job {
   app::Settings settings;
   app::Device device;
-  bool measures = true;
+  bool measures = false;
 };
 
 /// Reads numbers with commas between them.
@@ -133,7 +132,7 @@ class Work {
 };
 
 Status Work::measure(hal::AnalogStream& bench) noexcept {
-  Status status = sweep_.start(app::SweepSettings(), bench, workspace_.sweep);
+  Status status = sweep_.start(app::default_sweep_settings(), bench, workspace_.sweep);
   if (status != Status::kOk) {
     return status;
   }
@@ -167,19 +166,18 @@ void Work::print(const Job& job, app::TextWriter& out) const noexcept {
 }
 
 int run() noexcept {
-  static app::InPlace<Job> job_memory;
-  static app::InPlace<Work> work_memory;
+  static Job job;
+  static Work work;
   Status status = start_board();
   ConsoleSink sink(ports().console);
   app::TextWriter out(sink);
-  Job& job = job_memory.make();
+  job = {app::kDefaultSettings, {}, true};
   std::array<char, kCommandLineRoom> line = {};
   if (!read_job({line.data(), read_command_line(line)}, job)) {
     out.text(
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;
   }
-  Work& work = work_memory.make();
   if (status == Status::kOk) {
     status = work.run(job, ports().analog);
   }

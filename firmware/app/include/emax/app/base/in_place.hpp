@@ -1,4 +1,4 @@
-// Room for an object that is made at run time, so that it takes no flash whatever its first values.
+// Room for an object that is made at run time, from what is known only then.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,8 @@
 
 namespace emax::app {
 
-/// Memory for one `T`. As a static object it is all zero, so it sits in .bss and needs no
-/// initialiser: a `T` with defaults other than zero would take its whole size in .data, and the
-/// same again in flash.
+/// Memory for one `T` whose constructor takes arguments, or that shares its memory with others. As
+/// a static object it is all zero, so it sits in .bss and needs no initialiser.
 ///
 ///     static InPlace<Instrument> memory;
 ///     Instrument& instrument = memory.make(...);

@@ -75,15 +75,6 @@ struct Failure {
   double duration_s = 0.0;  ///< The T of the search that failed; 0 if it was no search.
 };
 
-/// A result whose status is zero, too: one default that is not would take flash for the whole
-/// object that the result is a part of.
-template <typename Result>
-constexpr Result all_zero() noexcept {
-  Result result;
-  result.status = Status::kOk;
-  return result;
-}
-
 /// What is kept of the trials: the results and a coarse histogram.
 class TrialResults {
  public:
@@ -97,7 +88,7 @@ class TrialResults {
   void take(const MonteCarlo& monte_carlo, const MonteCarloStore& store) noexcept;
 
  private:
-  MonteCarloResult result_ = all_zero<MonteCarloResult>();
+  MonteCarloResult result_;
   std::uint32_t rows_[kRows] = {};
 };
 
@@ -326,29 +317,7 @@ class Evaluation {
   void add_trend_point(double energy) noexcept;
   void end_trend() noexcept;
 
-  // Defaults that are not zero would take flash for the whole object.
-  static constexpr Settings kNoSettings = {0,
-                                           0.0,
-                                           GainMode::kAuto,
-                                           0.0,
-                                           0.0,
-                                           false,
-                                           0.0,
-                                           Criterion::kIntegralSquareError,
-                                           {},
-                                           0.0,
-                                           0,
-                                           0,
-                                           false,
-                                           0.0,
-                                           {},
-                                           false,
-                                           {},
-                                           {},
-                                           {},
-                                           0};
-
-  Settings settings_ = kNoSettings;
+  Settings settings_;
   Device device_;
   Wlsp fit_;
   WlspDraws draws_;
@@ -358,10 +327,10 @@ class Evaluation {
   MaximumEnergy maximum_;
   EnergyGuard guard_;
   TrialResults monte_carlo_;
-  AdaptiveResult adaptive_result_ = all_zero<AdaptiveResult>();
+  AdaptiveResult adaptive_result_;
   Accelerometer device_at_maximum_;
   TrendPoint trend_points_[kMaxTrendPoints] = {};
-  Trend trend_ = all_zero<Trend>();
+  Trend trend_;
   Failure failure_;
   Span<double> store_;
   double trace_[kTraceLength] = {};

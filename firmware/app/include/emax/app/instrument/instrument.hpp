@@ -37,7 +37,7 @@ struct MemoryUse {
 struct Board {
   const char* name = "";  ///< The second field of *IDN?.
   const char* serial = "0";
-  /// The defaults of the sweep; null for `SweepSettings{}`.
+  /// The defaults of the sweep; null for `default_sweep_settings()`.
   const SweepSettings* bench = nullptr;
   /// What a simulated bench was built from, for the report; null for a real one.
   const SimulatedBench* simulated = nullptr;
@@ -103,6 +103,24 @@ class Instrument {
   /// Lends memory for the values of the trials: as `Evaluation::lend_trial_store()`.
   void lend_trial_store(Span<double> store) noexcept { evaluation_.lend_trial_store(store); }
 
+  /// Why something cannot be done; kNoError if it can.
+  struct Refusal {
+    scpi::ErrorCode code = scpi::ErrorCode::kNoError;
+    const char* words = nullptr;
+    const char* subject = nullptr;  ///< What they are about; may be null.
+
+    explicit operator bool() const noexcept { return code != scpi::ErrorCode::kNoError; }
+  };
+
+  const Settings& settings() const noexcept { return settings_; }
+  const SweepSettings& sweep_settings() const noexcept { return sweep_settings_; }
+  /// @returns What *RST sets: the defaults of the board.
+  SweepSettings default_sweep() const noexcept;
+  /// Takes new settings over, unless they cannot be had together or what runs uses the old ones.
+  /// What was made with other settings than these is dropped.
+  Refusal take(const Settings& next) noexcept;
+  Refusal take(const SweepSettings& next) noexcept;
+
   /// @returns The table that parser and documentation share.
   static scpi::Table<Instrument> commands() noexcept;
 
@@ -126,14 +144,6 @@ class Instrument {
     kPaper,  ///< The energy by Method::kPaper.
     kEnergy,
     kDevice,
-  };
-
-  /// Why something cannot be done; kNoError if it can.
-  struct Refusal {
-    scpi::ErrorCode code = scpi::ErrorCode::kNoError;
-    const char* words = nullptr;
-
-    explicit operator bool() const noexcept { return code != scpi::ErrorCode::kNoError; }
   };
 
   /// The fixed point of CALCulate:ENERgy:FPA?.
@@ -197,7 +207,6 @@ class Instrument {
   void restore_identification() noexcept;
   void reset() noexcept;
   void reset_settings() noexcept;
-  SweepSettings default_sweep() const noexcept;
   void seed_generator() noexcept;
   void show_fit_quality() noexcept;
   Span<const char> render_report() noexcept;
@@ -208,7 +217,7 @@ class Instrument {
   Board board_;
   scpi::Session session_;
   Settings settings_;
-  SweepSettings sweep_settings_ = SweepSettings(kAllZero);
+  SweepSettings sweep_settings_;
   Device device_ = {};             // Of Origin::kModel.
   Identification identification_;  // From the store.
   WichmannHill generator_;

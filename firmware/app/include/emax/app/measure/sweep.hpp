@@ -234,7 +234,7 @@ class Sweep {
   double ratio_factor(const SweepWorkspace& work) const noexcept;
   Complex ratio_of(const PointScatter& scatter, const SweepWorkspace& work) const noexcept;
 
-  SweepSettings settings_ = SweepSettings(kAllZero);
+  SweepSettings settings_;
   BudgetInputs inputs_;
   std::array<SweepPoint, kMaxPoints> points_ = {};
   CommonBudget common_;

@@ -1,4 +1,4 @@
-// What the user sets before an evaluation, with the defaults of the instrument.
+// What the user sets before an evaluation, and the defaults of the instrument.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/base/status.hpp"
+#include "emax/app/settings/settings_error.hpp"
 #include "emax/base/wichmann_hill.hpp"
 #include "emax/energy/energy_search.hpp"
 #include "emax/model/modal_model.hpp"
@@ -28,42 +28,63 @@ enum class GainMode : std::uint8_t {
   kTrack,  ///< The S of each trial.
 };
 
-/// Everything but the device. `Settings{}` holds the defaults.
+/// Everything but the device. `Settings{}` is all zero, which `check()` refuses.
 struct Settings {
-  int filter_order = 10;
-  double cutoff_hz = 1000.0;
+  int filter_order = 0;
+  double cutoff_hz = 0.0;
   GainMode gain_mode = GainMode::kAuto;
-  double gain = 0.0;          ///< In V/(m/s^2); used by GainMode::kFixed only.
-  double duration_s = 0.002;  ///< T.
-  bool limit_is_auto = true;  ///< a is the number of S, as in the paper.
-  double limit_mps2 = 0.0;    ///< a; used if `limit_is_auto` is false.
+  double gain = 0.0;           ///< In V/(m/s^2); used by GainMode::kFixed only.
+  double duration_s = 0.0;     ///< T.
+  bool limit_is_auto = false;  ///< a is the number of S, as in the paper.
+  double limit_mps2 = 0.0;     ///< a; used if `limit_is_auto` is false.
   Criterion criterion = Criterion::kIntegralSquareError;
   Method method = Method::kBest;
-  double step_s = 2e-6;           ///< The paper's quantization step; Method::kPaper only.
-  std::uint32_t iterations = 30;  ///< The paper's J; Method::kPaper only.
-  std::uint32_t trials = 200000;
+  double step_s = 0.0;           ///< The paper's quantization step; Method::kPaper only.
+  std::uint32_t iterations = 0;  ///< The paper's J; Method::kPaper only.
+  std::uint32_t trials = 0;
   bool adaptive = false;  ///< JCGM 101 7.9 finds the number of trials; `trials` is then unused.
-  double probability = 0.95;
+  double probability = 0.0;
   Distribution distribution = Distribution::kBox;
   bool birge = false;  ///< Trials take the uncertainties times the fit's Birge ratio, if above 1.
-  std::array<std::uint32_t, 4> seed = {123456789, 345678901, 567890123, 789012345};
+  std::array<std::uint32_t, 4> seed = {};
   Generator generator = Generator::k2006;
-  std::array<double, kMaxTrendPoints> trend_s = {0.002, 0.004, 0.006, 0.008, 0.010};
-  std::size_t trend_count = 5;  ///< 0 for no trend, else 2 or more.
+  std::array<double, kMaxTrendPoints> trend_s = {};
+  std::size_t trend_count = 0;  ///< 0 for no trend, else 2 or more.
 };
 
 static_assert(std::is_trivially_copyable_v<Settings>);
 
-/// What `check()` found wrong: which setting, and in words what it must be.
-struct SettingsError {
-  const char* setting = nullptr;  ///< The option's name, "time" for instance; null if all is well.
-  const char* expectation = nullptr;  ///< "more than 0 and at most 1000 s".
-};
+/// What the instrument starts with, and *RST sets: the paper's filter, signal and trend.
+constexpr Settings default_settings() noexcept {
+  Settings settings;
+  settings.filter_order = 10;
+  settings.cutoff_hz = 1000.0;
+  settings.duration_s = 0.002;
+  settings.limit_is_auto = true;
+  settings.step_s = 2e-6;
+  settings.iterations = 30;
+  settings.trials = 200000;
+  settings.probability = 0.95;
+  settings.seed = {123456789, 345678901, 567890123, 789012345};
+  settings.trend_s = {0.002, 0.004, 0.006, 0.008, 0.010};
+  settings.trend_count = 5;
+  return settings;
+}
+inline constexpr Settings kDefaultSettings = default_settings();
 
 /// Checks each setting against its range, and those that limit one another.
 ///
 /// @returns The first that is wrong, in the order of `Settings`; nulls if there is none. What only
 /// the device decides, such as the number of cells that T takes, is left to the evaluation.
 SettingsError check(const Settings& settings) noexcept;
+
+/// @returns Whether what depends on the settings is the same for both: model, limit and energy.
+bool is_same_energy(const Settings& a, const Settings& b) noexcept;
+/// The random numbers: those of the trials and of the draws of the fit.
+bool is_same_random(const Settings& a, const Settings& b) noexcept;
+/// The trials of the same energy, with their random numbers.
+bool is_same_trials(const Settings& a, const Settings& b) noexcept;
+/// The times of the trend.
+bool is_same_trend(const Settings& a, const Settings& b) noexcept;
 
 }  // namespace emax::app

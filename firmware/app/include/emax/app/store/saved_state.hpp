@@ -7,7 +7,9 @@
 
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/settings/settings.hpp"
+#include "emax/app/settings/settings_rows.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
+#include "emax/app/settings/sweep_settings_rows.hpp"
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
@@ -22,14 +24,14 @@ inline constexpr std::uint32_t kSavedRecords = kIdentificationRecord + 1;
 
 /// The most bytes that `encode()` makes of settings, all tables full.
 inline constexpr std::size_t kMaxSavedSettingsBytes =
-    220 + 8 * kMaxTrendPoints + 8 * kMaxPoints + 16 * kMaxReferencePoints;
+    4 + most_saved_bytes(kSettingRows) + most_saved_bytes(kSweepSettingRows);
 /// All that it makes of an identification.
 inline constexpr std::size_t kSavedIdentificationBytes = 113;
 
 /// The settings that *SAV keeps.
 struct SavedSettings {
   Settings settings;
-  SweepSettings sweep = SweepSettings(kAllZero);
+  SweepSettings sweep;
 };
 
 /// A device with where it comes from and how good the fit was.

@@ -10,7 +10,7 @@
 #include "desk/cli/options.hpp"
 #include "desk/cli/problem.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 struct ScpiOptions {
   ReportOptions report;  ///< Its bench and its sweep; nothing else of it is asked for.
@@ -26,4 +26,7 @@ struct ScpiOptions {
 /// @param[out] options Of no use if there is a problem.
 Problem parse_scpi_options(Span<const std::string_view> arguments, ScpiOptions& options);
 
-}  // namespace emax::host
+/// @returns The help of all options, in lines of at most 80 characters.
+std::string help_on_scpi_options();
+
+}  // namespace emax::desk

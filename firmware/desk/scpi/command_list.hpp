@@ -3,9 +3,9 @@
 
 #include "emax/app/base/text_writer.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 /// Writes the instrument's own table as Markdown, one row for each command.
 void write_command_list(app::TextWriter& out) noexcept;
 
-}  // namespace emax::host
+}  // namespace emax::desk

@@ -1,9 +1,9 @@
 // The table of all SCPI commands for people who read.
-#include "command_list.hpp"
+#include "desk/scpi/command_list.hpp"
 
 #include "emax/app/instrument/instrument.hpp"
 
-namespace emax::host {
+namespace emax::desk {
 
 namespace {
 
@@ -47,4 +47,4 @@ void write_command_list(app::TextWriter& out) noexcept {
   }
 }
 
-}  // namespace emax::host
+}  // namespace emax::desk
