@@ -22,6 +22,7 @@ class NoStream final : public hal::AnalogStream {
   }
   std::uint32_t do_ramp_to_zero(hal::Word /*step_per_frame*/) noexcept override { return 0; }
   void do_stop() noexcept override {}
+  bool do_drive_is_at_zero() const noexcept override { return true; }
 };
 
 class NoConsole final : public hal::ByteStream {

@@ -271,8 +271,10 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
   }
   const ReferenceValue by_default = default_reference(i);
   ReferenceValue value = {0.0, current.expanded_percent};
-  const NumberRule sensitivity = {kSmallest, kLargest, by_default.sensitivity, nullptr};
-  const NumberRule percent = {0.0, kMaxPercent, by_default.expanded_percent, scpi::kPercent};
+  const NumberRule sensitivity = {ranges::kSmallest, ranges::kLargest, by_default.sensitivity,
+                                  nullptr};
+  const NumberRule percent = {0.0, ranges::kMaxPercent, by_default.expanded_percent,
+                              scpi::kPercent};
   if (!call.number(sensitivity, value.sensitivity) ||
       (call.has_more() && !call.number(percent, value.expanded_percent))) {
     return;

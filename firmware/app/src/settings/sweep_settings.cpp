@@ -18,7 +18,9 @@ struct Run {
 };
 constexpr Run kRuns[] = {{30.0, 100.0, 10.0}, {200.0, 1000.0, 100.0}, {1200.0, 6000.0, 200.0}};
 
-bool is_positive(double value) noexcept { return value >= kSmallest && value <= kLargest; }
+bool is_positive(double value) noexcept {
+  return value >= ranges::kSmallest && value <= ranges::kLargest;
+}
 
 double highest_hz(const hal::StreamFormat& format) noexcept {
   return format.sample_rate_hz / kMinSamplesPerPeriod;
@@ -38,7 +40,7 @@ SettingsError check_frequencies(const SweepSettings& s, const hal::StreamFormat&
     }
   }
   // A period must be countable in frames.
-  if (!(s.frequency_hz[0] * kMaxRepeat_s >= 1.0)) {
+  if (!(s.frequency_hz[0] * ranges::kMaxRepeat_s >= 1.0)) {
     return {"sweep frequencies", "0.1 Hz or more"};
   }
   return {};
@@ -66,7 +68,7 @@ bool suits_ramp(const SweepSettings& s, const hal::StreamFormat& format) noexcep
   const double slowest = s.drive_limit_v / static_cast<double>(hal::kMaxRampFrames);
   const double slew_v = s.slew_v_per_s / format.sample_rate_hz;
   // 1e-6 more than a 256th per frame, so that rounding to words cannot fall below.
-  return slew_v >= slowest * (1.0 + 1e-6) && slew_v <= kLargest;
+  return slew_v >= slowest * (1.0 + 1e-6) && slew_v <= ranges::kLargest;
 }
 
 constexpr std::size_t row(const char* name) noexcept { return row_of(kSweepSettingRows, name); }
@@ -82,7 +84,7 @@ bool is_suitable(std::size_t index, const SweepSettings& s,
     case row("slew"):
       return suits_ramp(s, format);
     case row("check frequency"):
-      return s.check_hz * kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
+      return s.check_hz * ranges::kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
     case row("expected sensitivity"):
       return s.expected_sensitivity == 0.0 || is_positive(s.expected_sensitivity);
     default:

@@ -16,8 +16,12 @@ inline constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence"};
 inline constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
 inline constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
 inline constexpr const char* kGeneratorWords[] = {"WH2006", "WH1982"};
+namespace ranges {
+
 /// The shortest time that the console takes.
 inline constexpr double kNanoSecond = 1e-9;
+
+}  // namespace ranges
 
 /// In the order of the members. A setting whose check looks at more than its range has it in
 /// settings.cpp.
@@ -44,7 +48,7 @@ inline constexpr SettingRow kSettingRows[] = {
         .as_option(
             {nullptr, "SECONDS", "a number of seconds above 0", "length T of the signal in s"})
         .as_command("CALCulate:ENERgy:TIME", "<T>", "Length of the signal", "S")
-        .on_console_within(kNanoSecond, kMaxDuration_s),
+        .on_console_within(ranges::kNanoSecond, kMaxDuration_s),
     setting("limit", EMAX_SETTING(Settings, limit_mps2), offsetof(Settings, limit_is_auto),
             SettingGroup::kSignal, Concern::kEnergy)
         .within(kMinLimit_mps2, kMaxLimit_mps2, "from 1e-9 to 1e9 m/s^2")
@@ -73,7 +77,7 @@ inline constexpr SettingRow kSettingRows[] = {
         .as_option({nullptr, "SECONDS", "a number of seconds above 0",
                     "width of a grid cell in s; for --method paper"})
         .as_command("CALCulate:ENERgy:STEP", "<s>", "Grid step of PAPer and FPA?", "S")
-        .on_console_within(kNanoSecond, kMaxDuration_s),
+        .on_console_within(ranges::kNanoSecond, kMaxDuration_s),
     setting("iterations", EMAX_SETTING(Settings, iterations), SettingGroup::kSignal,
             Concern::kPaper)
         .within(1, kMaxIterations, "a whole number from 1 to 1000")

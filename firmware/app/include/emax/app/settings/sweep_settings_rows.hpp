@@ -8,11 +8,17 @@
 
 namespace emax::app {
 
+/// Ends of ranges that are the same for several settings.
+namespace ranges {
+
 /// Of levels, gains and sensitivities.
 inline constexpr double kSmallest = 1e-9;
 inline constexpr double kLargest = 1e9;
 inline constexpr double kMaxRepeat_s = 10.0;
 inline constexpr double kMaxPercent = 50.0;
+
+}  // namespace ranges
+
 inline constexpr SettingRow kReferenceTableRow =
     setting("reference table", EMAX_SETTING(SweepSettings, reference.frequency_hz),
             offsetof(SweepSettings, reference.count), SettingGroup::kChain, Concern::kSweep);
@@ -23,19 +29,20 @@ inline constexpr SettingRow kSweepSettingRows[] = {
     setting("sweep frequencies", EMAX_SETTING(SweepSettings, frequency_hz),
             offsetof(SweepSettings, frequency_count), SettingGroup::kDrive, Concern::kSweep),
     setting("level", EMAX_SETTING(SweepSettings, level_mps2), SettingGroup::kDrive, Concern::kSweep)
-        .within(kSmallest, kLargest, "above 0, in m/s^2")
+        .within(ranges::kSmallest, ranges::kLargest, "above 0, in m/s^2")
         .as_option(
             {nullptr, "MPS2", "a number of m/s^2 above 0", "peak acceleration to reach, in m/s^2"})
         .as_command("SOURce:LEVel", "<m/s2>", "Peak acceleration to reach", "M/S2"),
     setting("acceleration limit", EMAX_SETTING(SweepSettings, acceleration_limit_mps2),
             SettingGroup::kDrive, Concern::kSweep)
-        .within(kSmallest, kLargest, "at least the level, in m/s^2")
+        .within(ranges::kSmallest, ranges::kLargest, "at least the level, in m/s^2")
         .as_option({"acceleration-limit", "MPS2", "a number of m/s^2 above 0",
                     "peak acceleration never to exceed, in m/s^2"})
         .as_command("SOURce:LIMit", "<m/s2>", "Peak acceleration never to exceed", "M/S2"),
     setting("drive limit", EMAX_SETTING(SweepSettings, drive_limit_v), SettingGroup::kDrive,
             Concern::kSweep)
-        .within(kSmallest, kLargest, "above 0 and at most the converter's full scale, in V")
+        .within(ranges::kSmallest, ranges::kLargest,
+                "above 0 and at most the converter's full scale, in V")
         .as_option({"drive-limit", "VOLTS", "a number of V above 0",
                     "peak drive never to exceed, in V, at most 10"}),
     // The stream's rate decides.
@@ -46,7 +53,7 @@ inline constexpr SettingRow kSweepSettingRows[] = {
         .as_option({nullptr, "V/S", "a number of V/s above 0",
                     "slope of the drive never to exceed, in V/s"})
         .as_command("SOURce:SLEW", "<V/s>", "Slope of the drive never to exceed", "V/S")
-        .on_console_within(kSmallest, kLargest),
+        .on_console_within(ranges::kSmallest, ranges::kLargest),
     setting("settling time", EMAX_SETTING(SweepSettings, settle_s), SettingGroup::kRest,
             Concern::kSweep)
         .within(0.0, 10.0, "0 to 10 s")
@@ -61,7 +68,7 @@ inline constexpr SettingRow kSweepSettingRows[] = {
         .as_command("[SENSe:]SWEep:CYCLes", "<n>", "Periods per repeat, at least"),
     setting("repeat duration", EMAX_SETTING(SweepSettings, repeat_s), SettingGroup::kRepeats,
             Concern::kSweep)
-        .within(0.0, kMaxRepeat_s, "0 to 10 s"),
+        .within(0.0, ranges::kMaxRepeat_s, "0 to 10 s"),
     setting("repeats", EMAX_SETTING(SweepSettings, repeats), SettingGroup::kRepeats,
             Concern::kSweep)
         .within(2, kMaxRepeats, "2 to 16"),
@@ -70,27 +77,27 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             kReferenceTableRow),
     setting("reference uncertainty", EMAX_SETTING(SweepSettings, reference.expanded_percent),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, kMaxPercent, "0 to 50 percent"),
+        .within(0.0, ranges::kMaxPercent, "0 to 50 percent"),
     setting("reference gain", EMAX_SETTING(SweepSettings, reference_gain), SettingGroup::kChain,
             Concern::kSweep)
-        .within(kSmallest, kLargest, "above 0"),
+        .within(ranges::kSmallest, ranges::kLargest, "above 0"),
     setting("device gain", EMAX_SETTING(SweepSettings, device_gain), SettingGroup::kChain,
             Concern::kSweep)
-        .within(kSmallest, kLargest, "above 0"),
+        .within(ranges::kSmallest, ranges::kLargest, "above 0"),
     setting("gain uncertainty", EMAX_SETTING(SweepSettings, gain_expanded_percent),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, kMaxPercent, "0 to 50 percent"),
+        .within(0.0, ranges::kMaxPercent, "0 to 50 percent"),
     setting("mounting uncertainty", EMAX_SETTING(SweepSettings, mounting_expanded_percent),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, kMaxPercent, "0 to 50 percent"),
+        .within(0.0, ranges::kMaxPercent, "0 to 50 percent"),
     setting("skew", EMAX_SETTING(SweepSettings, skew_s), SettingGroup::kChain, Concern::kSweep)
         .within(-1e-3, 1e-3, "within 1 ms of either sign"),
     setting("check frequency", EMAX_SETTING(SweepSettings, check_hz), SettingGroup::kChain,
             Concern::kSweep)
-        .within(0.0, kLargest, "0.1 Hz or more and below the sample rate over 2.5"),
+        .within(0.0, ranges::kLargest, "0.1 Hz or more and below the sample rate over 2.5"),
     setting("expected sensitivity", EMAX_SETTING(SweepSettings, expected_sensitivity),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, kLargest, "above 0 in V/(m/s^2), or 0 if it is not known"),
+        .within(0.0, ranges::kLargest, "above 0 in V/(m/s^2), or 0 if it is not known"),
 };
 
 static_assert(members_in(kSweepSettingRows) ==
