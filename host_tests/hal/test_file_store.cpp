@@ -20,12 +20,18 @@
 #include "file_store.hpp"
 #include "hal/board_conformance.hpp"
 
-namespace emax::host {
 namespace {
 
-using app::RecordStore;
-using hal::StoreFormat;
-using test::violated_by_store;
+using emax::Span;
+using emax::Status;
+using emax::app::RecordStore;
+using emax::hal::StoreFormat;
+using emax::host::FileBytes;
+using emax::host::FileStore;
+using emax::host::kFileStoreFormat;
+using emax::host::Problem;
+using emax::host::VolatileBytes;
+using emax::test::violated_by_store;
 
 /// A directory of its own, which is removed with all that is in it.
 class Directory {
@@ -49,7 +55,7 @@ std::string text_of(const std::string& path) {
 }
 
 /// A store over bytes whose power can be cut within any write.
-class CutBench final : public StoreBytes {
+class CutBench final : public emax::host::StoreBytes {
  public:
   CutBench(StoreBytes& bytes, const StoreFormat& format) : bytes_(bytes), store_(*this, format) {}
 
@@ -151,7 +157,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
     std::ofstream(path, std::ios::binary) << text;
     FileBytes file;
     const Problem problem = file.open(path);
-    EXPECT_EQ(problem.status, ExitStatus::kBadInput);
+    EXPECT_EQ(problem.status, emax::host::ExitStatus::kBadInput);
     EXPECT_EQ(problem.line, "--store: " + path +
                                 ": something else, or damaged; expected a file that --store has "
                                 "made, or a new name");
@@ -166,7 +172,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
             "new name");
   ASSERT_EQ(unlink(path.c_str()), 0);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_EQ(file.open(path).status, ExitStatus::kBadInput) << "a pipe: no waiting";
+  EXPECT_EQ(file.open(path).status, emax::host::ExitStatus::kBadInput) << "a pipe: no waiting";
 }
 
 TEST(FileStore, OneProgramAtATime) {
@@ -263,4 +269,3 @@ TEST(FileStore, KilledAtAnyMomentLeavesTheOldOrTheNew) {
 }
 
 }  // namespace
-}  // namespace emax::host

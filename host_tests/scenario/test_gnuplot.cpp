@@ -12,10 +12,12 @@
 
 #include "desk/pictures/gnuplot.hpp"
 
-namespace emax::host {
 namespace {
 
 namespace fs = std::filesystem;
+using emax::host::GnuplotEnd;
+using emax::host::GnuplotRun;
+using emax::host::run_gnuplot;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
@@ -71,7 +73,8 @@ TEST(Gnuplot, OneThatIsSlowIsWaitedFor) {
   EXPECT_EQ(gnuplot.run(milliseconds(60'000)).end, GnuplotEnd::kDone);
 }
 
-TEST(Gnuplot, TheProgramGivesItTwentySeconds) { EXPECT_EQ(kDrawingTime, std::chrono::seconds(20)); }
+TEST(Gnuplot, TheProgramGivesItTwentySeconds) {
+  EXPECT_EQ(emax::host::kDrawingTime, std::chrono::seconds(20));
+}
 
 }  // namespace
-}  // namespace emax::host

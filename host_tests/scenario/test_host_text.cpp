@@ -11,11 +11,14 @@
 #include "desk/files/rounding.hpp"
 #include "support/string_sink.hpp"
 
-namespace emax::host {
 namespace {
 
-using app::TextWriter;
-using test::text_of;
+using emax::app::TextWriter;
+using emax::host::characters_in;
+using emax::host::printable;
+using emax::host::rounded_up;
+using emax::host::shortened;
+using emax::test::text_of;
 
 std::string repeated(const std::string& text, int count) {
   std::string all;
@@ -89,4 +92,3 @@ TEST(RoundedUp, LeavesWhatHasSoFewDigits) {
 }
 
 }  // namespace
-}  // namespace emax::host
