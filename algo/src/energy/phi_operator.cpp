@@ -24,7 +24,6 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   duration_s_ = duration_s;
   count_ = model.modes().size();
   endless_diagonal_ = 0.0;
-  double diagonal_of_sensor = 0.0;
   const double h = duration_s / static_cast<double>(cells);
   for (std::size_t m = 0; m < count_; ++m) {
     const Mode mode = model.modes()[m];
@@ -35,7 +34,9 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
     const Complex correlation = model.correlation(m);
     correlation_[m] = correlation * width * width;
     endless_diagonal_ += 2.0 * h * h * real_of_product(correlation, phi2(z));
-    diagonal_of_sensor = m == 0 ? endless_diagonal_ : diagonal_of_sensor;
+    if (m == 0) {
+      diagonal_limit_ = endless_diagonal_;
+    }
   }
   // Without a second mode the last one is taken together with one that is nothing.
   step_[count_] = {};
@@ -43,23 +44,21 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   correlation_[count_] = {};
   const bool square = model.criterion() == Criterion::kIntegralSquareError;
   if (square) {
-    fill_pulses(count_, endless_diagonal_);
-  } else {
-    fill_pulses(1, diagonal_of_sensor);
+    diagonal_limit_ = endless_diagonal_;
   }
+  fill_pulses(square ? count_ : 1);
   return Status::kOk;
 }
 
 /// Of a pulse of w cells: w times the diagonal of Phi's Toeplitz part and twice (w - d) times the
-/// element at each distance d. The limit counts the first modes only, whose part of the
-/// diagonal is `diagonal_limit`.
-void PhiOperator::fill_pulses(std::size_t modes_of_limit, double diagonal_limit) noexcept {
+/// element at each distance d. The limit counts the first modes only.
+void PhiOperator::fill_pulses(std::size_t modes_of_limit) noexcept {
   Complex term[kMaxModes];
   for (std::size_t m = 0; m < count_; ++m) {
     term[m] = correlation_[m];
   }
   double rise = endless_diagonal_;
-  double rise_of_limit = diagonal_limit;
+  double rise_of_limit = diagonal_limit_;
   double energy = 0.0;
   double limit = 0.0;
   greatest_pulse_limit_ = 0.0;

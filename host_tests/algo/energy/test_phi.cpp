@@ -109,6 +109,12 @@ TEST_P(PhiCase, OperatorAndMatrixAreTheSame) {
   }
 }
 
+TEST_P(PhiCase, NoElementOfTheDiagonalIsAboveTheLimit) {
+  for (std::size_t i = 0; i < kCells; ++i) {
+    EXPECT_LE(operator_.diagonal(i), operator_.diagonal_limit() * (1.0 + 1e-13));
+  }
+}
+
 TEST_P(PhiCase, PulseIsASumOverTheMatrixAndNotAboveItsLimit) {
   const double tolerance = 1e-14 * scale_ + test::rounding_of(model_) / kCells;
   for (std::size_t width = 1; width <= PhiOperator::kMaxPulse; ++width) {

@@ -44,7 +44,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kDcDrift,           ///< The offset of a channel does not stay where it was.
     kNotProven,         ///< No bound passed its check.
     kNothingStored,     ///< No whole record is stored there.
-    kUnknownRecord,     ///< The record stored is of another version or of another kind.
+    kUnknownRecord,     ///< What is stored is of another version, or no such thing.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.

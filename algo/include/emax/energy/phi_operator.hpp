@@ -63,12 +63,16 @@ class PhiOperator {
   /// The greatest of the `pulse_limit()`s.
   double greatest_pulse_limit() const noexcept { return greatest_pulse_limit_; }
 
+  /// No element of the diagonal is larger than this, which is that of an endless record; for the
+  /// energy difference, that of the sensor alone. Free of charge.
+  double diagonal_limit() const noexcept { return diagonal_limit_; }
+
  private:
   template <typename Signal>
   void apply(Signal signal, Span<double> product) const noexcept;
   static constexpr std::size_t kPlaces = kMaxModes + 1;  // One that is nothing follows the modes.
 
-  void fill_pulses(std::size_t modes_of_limit, double diagonal_limit) noexcept;
+  void fill_pulses(std::size_t modes_of_limit) noexcept;
 
   const ModalModel* model_ = nullptr;
   Complex step_[kPlaces] = {};         // e^(p h)
@@ -79,6 +83,7 @@ class PhiOperator {
   double pulse_limit_[kMaxPulse] = {};
   double greatest_pulse_limit_ = 0.0;
   double endless_diagonal_ = 0.0;
+  double diagonal_limit_ = 0.0;
   double duration_s_ = 0.0;
   std::size_t cells_ = 0;
   std::size_t count_ = 0;

@@ -29,8 +29,8 @@ class AbsoluteError {
   /// @param[in] duration_s T, above 0.
   /// @returns
   /// * kOk: `step()` until `done()`.
-  /// * kInvalidArgument: A duration not above 0 or not finite, or of more than 2^20 samples. Then
-  ///   `done()` is true and the value is 0.
+  /// * kInvalidArgument: A duration not above 0 or not finite, or of more than 2^20 samples. It is
+  ///   done then, with a value of 0.
   Status start(const ModalModel& model, double duration_s) noexcept;
 
   /// Looks at the next 24 samples.
@@ -42,7 +42,7 @@ class AbsoluteError {
   bool done() const noexcept { return !running_; }
   /// @returns With `done()`, in V/(m/s^2): times a in V.
   double value() const noexcept { return value_; }
-  /// @returns The number of zeros of k, which may be more than there was room for.
+  /// @returns How many zeros there are, also if not all had room.
   std::size_t zeros() const noexcept { return zeros_; }
 
  private:
