@@ -18,7 +18,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #                          <word>... [--console null|tcp:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]. Without it,
 #                          nothing of the board is run in the tests. common/qemu.py makes one of QEMU.
 #   FLASH <word>...        The command that puts the product on the board, with @IMAGE@ for its path: target `flash`.
-#   COUNTER <file>         Counts instructions for the image of the costs (firmware/cost/instruction_counter.hpp),
+#   COUNTER <file>         Counts instructions for the image of the costs (emax/board/instruction_counter.hpp),
 #   INSTRUCTION_NS <n>     while the runner lets each take so much of the machine's time.
 #   CORE_TITLE <word>      In the tables of firmware/README.md: the core,
 #   TABLE_CLOCK_MHZ <n>    the clock of a chip that has it,

@@ -9,10 +9,10 @@
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
+#include "emax/board/instruction_counter.hpp"
 #include "emax/board/semihosting.hpp"
 
 #include "command_line.hpp"
-#include "instruction_counter.hpp"
 #include "memory.hpp"
 #include "rows.hpp"
 #include "test_image.hpp"

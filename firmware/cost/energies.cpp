@@ -1,9 +1,9 @@
 // Search, bound and trials, called as the evaluation calls them.
+#include "emax/board/instruction_counter.hpp"
 #include "emax/bound/energy_bound.hpp"
 #include "emax/energy/energy_search.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 
-#include "instruction_counter.hpp"
 #include "memory.hpp"
 #include "rows.hpp"
 

@@ -4,10 +4,10 @@
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/settings/settings.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
+#include "emax/board/instruction_counter.hpp"
 #include "emax/identify/frequency_response.hpp"
 #include "emax/model/accelerometer.hpp"
 
-#include "instruction_counter.hpp"
 #include "memory.hpp"
 #include "rows.hpp"
 

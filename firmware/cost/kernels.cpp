@@ -5,10 +5,10 @@
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
 #include "emax/board/board.hpp"
+#include "emax/board/instruction_counter.hpp"
 #include "emax/energy/fixed_point.hpp"
 #include "emax/hal/analog_stream.hpp"
 
-#include "instruction_counter.hpp"
 #include "memory.hpp"
 #include "rows.hpp"
 

@@ -4,9 +4,9 @@
 
 #include "emax/app/measure/sweep.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
+#include "emax/board/instruction_counter.hpp"
 #include "emax/hal/analog_stream.hpp"
 
-#include "instruction_counter.hpp"
 #include "memory.hpp"
 #include "rows.hpp"
 

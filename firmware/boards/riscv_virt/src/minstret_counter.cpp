@@ -1,5 +1,5 @@
 // The counter of retired instructions that every RISC-V core has.
-#include "instruction_counter.hpp"
+#include "emax/board/instruction_counter.hpp"
 
 namespace emax::cost {
 

@@ -1,8 +1,7 @@
 // A timer of the Cortex-M System Design Kit, of 32 bits: an instruction takes 64 ns of the
 // emulator's time, a tick 40 ns.
+#include "emax/board/instruction_counter.hpp"
 #include "emax/board/registers.hpp"
-
-#include "instruction_counter.hpp"
 
 namespace emax::cost {
 namespace {
