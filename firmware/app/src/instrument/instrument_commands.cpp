@@ -2,6 +2,7 @@
 #include "instrument_commands.hpp"
 
 #include "emax/app/base/version.hpp"
+#include "emax/app/instrument/self_test.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/energy/fixed_point.hpp"
@@ -13,32 +14,33 @@ constexpr double kPercent = 100.0;
 
 }  // namespace
 
+void InstrumentCommands::report(const ErrorWords& words, Call& call) noexcept {
+  if (words) {
+    call.fail(words.code, words.words, words.subject);
+  }
+}
+
 void InstrumentCommands::identify_instrument(Instrument& i, Call& call) noexcept {
-  scpi::Response& answer = call.answer();
-  answer.word("emax").word(i.board_.name).word(i.board_.serial).word(kVersion);
+  call.answer().word("emax").word(i.board().name).word(i.board().serial).word(kVersion);
 }
 
 void InstrumentCommands::reset(Instrument& i, Call& /*call*/) noexcept { i.reset(); }
 
 void InstrumentCommands::clear(Instrument& i, Call& call) noexcept {
   scpi::clear_status(call);
-  i.completes_operation_ = false;
+  i.forget_completion();
 }
 
 void InstrumentCommands::operation_complete(Instrument& i, Call& call) noexcept {
-  if (call.is_query()) {
-    if (i.is_working()) {
-      call.wait();
-      return;
-    }
-    call.answer().integer(1);
+  if (!call.is_query()) {
+    i.complete_operation();
     return;
   }
   if (i.is_working()) {
-    i.completes_operation_ = true;
+    call.wait();
     return;
   }
-  call.status().add_events(scpi::kOperationComplete);
+  call.answer().integer(1);
 }
 
 void InstrumentCommands::wait(Instrument& i, Call& call) noexcept {
@@ -48,8 +50,9 @@ void InstrumentCommands::wait(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
-  call.answer().integer(static_cast<std::int64_t>(floor(kPercent * i.progress())));
-  const char* name = i.stage_name();
+  const double percent = floor(kPercent * i.sequencer().progress());
+  call.answer().integer(static_cast<std::int64_t>(percent));
+  const char* name = i.sequencer().stage_name();
   std::size_t length = 0;
   while (name[length] != '\0') {
     ++length;
@@ -60,15 +63,7 @@ void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
 void InstrumentCommands::abort(Instrument& i, Call& /*call*/) noexcept { i.abort(); }
 
 void InstrumentCommands::initiate_sweep(Instrument& i, Call& call) noexcept {
-  if (i.is_working()) {
-    call.fail(ErrorCode::kInitIgnored, "running: ABOR or *WAI first");
-    return;
-  }
-  if (const Refusal refusal = i.begin_sweep()) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  i.is_background_ = true;
+  report(i.initiate_sweep(), call);
 }
 
 void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
@@ -76,14 +71,13 @@ void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
     call.wait();
     return;
   }
-  call.answer().integer(run_self_test(i.workspace_.self_test));
+  call.answer().integer(run_self_test(i.sequencer().borrow<SelfTestWorkspace>()));
 }
 
 namespace {
 
 using C = InstrumentCommands;
 using I = Instrument;
-using Change = C::Change;
 using scpi::Forms;
 using scpi::IntegerRule;
 using scpi::NumberRule;
@@ -175,31 +169,31 @@ constexpr scpi::Command<Instrument> kCommands[] = {
     {"CALCulate:IDENtify", kQuery, "", "Fits the points: S,f0,beta,uS,uf0,ubeta,chi2,dof", kPlain, C::identify},
     {"CALCulate:IDENtify:COVariance", kQuery, "", "Covariance of S, f0, beta, row by row", kPlain, C::covariance},
     {"CALCulate:MODel", kBoth, "<S>,<f0>,<beta>[,<uS>,<uf0>,<ubeta>]", "The device by its parameters, standard u", kPlain, C::model},
-    {"CALCulate:FILTer:ORDer", kBoth, "<L>", "Order of the reference filter", kQueryLimits, C::integer<int, &Settings::filter_order, kOrder, Change::kEnergy>},
-    {"CALCulate:FILTer:FREQuency", kBoth, "<Hz>", "Its cutoff frequency", kQueryLimits, C::number<&Settings::cutoff_hz, kCutoff, Change::kEnergy>},
+    {"CALCulate:FILTer:ORDer", kBoth, "<L>", "Order of the reference filter", kQueryLimits, C::integer<int, &Settings::filter_order, kOrder>},
+    {"CALCulate:FILTer:FREQuency", kBoth, "<Hz>", "Its cutoff frequency", kQueryLimits, C::number<&Settings::cutoff_hz, kCutoff>},
     {"CALCulate:FILTer:GAIN", kBoth, "<g>|AUTO|TRACk", "Its gain; AUTO: the estimate of S, TRACk: the S of each trial", kQueryLimits, C::filter_gain},
-    {"CALCulate:ENERgy:TIME", kBoth, "<T>", "Length of the signal", kQueryLimits, C::number<&Settings::duration_s, kTime, Change::kEnergy>},
+    {"CALCulate:ENERgy:TIME", kBoth, "<T>", "Length of the signal", kQueryLimits, C::number<&Settings::duration_s, kTime>},
     {"CALCulate:ENERgy:LIMit", kBoth, "<a>|AUTO", "The signal stays within +-a; AUTO: the number of S", kQueryLimits, C::energy_limit},
-    {"CALCulate:ENERgy:CRITerion", kBoth, "ISE|DIFFerence", "Energy of the error, or difference of the energies", kPlain, C::choice<Criterion, &Settings::criterion, kCriterionWords, Change::kEnergy>},
-    {"CALCulate:ENERgy:METHod", kBoth, "BEST|PAPer", "Many starts, or the fixed point of the paper", kPlain, C::choice<Method, &Settings::method, kMethodWords, Change::kEnergy>},
-    {"CALCulate:ENERgy:STEP", kBoth, "<s>", "Grid step of PAPer and FPA?", kQueryLimits, C::number<&Settings::step_s, kStep, Change::kPaper>},
-    {"CALCulate:ENERgy:ITERations", kBoth, "<J>", "Iterations of PAPer and FPA?, at most", kQueryLimits, C::integer<std::uint32_t, &Settings::iterations, kIterations, Change::kPaper>},
+    {"CALCulate:ENERgy:CRITerion", kBoth, "ISE|DIFFerence", "Energy of the error, or difference of the energies", kPlain, C::choice<Criterion, &Settings::criterion, kCriterionWords>},
+    {"CALCulate:ENERgy:METHod", kBoth, "BEST|PAPer", "Many starts, or the fixed point of the paper", kPlain, C::choice<Method, &Settings::method, kMethodWords>},
+    {"CALCulate:ENERgy:STEP", kBoth, "<s>", "Grid step of PAPer and FPA?", kQueryLimits, C::number<&Settings::step_s, kStep>},
+    {"CALCulate:ENERgy:ITERations", kBoth, "<J>", "Iterations of PAPer and FPA?, at most", kQueryLimits, C::integer<std::uint32_t, &Settings::iterations, kIterations>},
     {"CALCulate:ENERgy", kQuery, "", "The maximum energy: E,xi,bound,n,t1,...,tn", kPlain, C::energy},
     {"CALCulate:ENERgy:EVALuate", kQuery, "[<t1>,...]", "Energy of the signal that starts at +a and changes sign at these times", kPlain, C::evaluate},
     {"CALCulate:ENERgy:FPA", kQuery, "", "The fixed point of the paper: iterations,E_0,E_1,...", kPlain, C::fixed_point},
     {"CALCulate:AERRor", kQuery, "", "The largest absolute error, V", kPlain, C::absolute_error},
     {"CALCulate:IMPulse", kQuery, "<t1>,...", "k(t)", kPlain, C::impulse_response},
     {"CALCulate:SETTle", kQuery, "", "The 5 % settling time", kPlain, C::settling_time},
-    {"CALCulate:MCARlo:TRIals", kBoth, "<M>", "Number of trials", kQueryLimits, C::integer<std::uint32_t, &Settings::trials, kTrials, Change::kTrials>},
+    {"CALCulate:MCARlo:TRIals", kBoth, "<M>", "Number of trials", kQueryLimits, C::integer<std::uint32_t, &Settings::trials, kTrials>},
     {"CALCulate:MCARlo:ADAPtive", kBoth, "<on>", "The number of trials by JCGM 101 7.9", kPlain, C::trials_switch<&Settings::adaptive>},
     {"CALCulate:MCARlo:SEED", kBoth, "<a>,<b>,<c>,<d>", "Start of the random numbers", kPlain, C::seed},
-    {"CALCulate:MCARlo:GENerator", kBoth, "WH2006|WH1982", "Generator of Wichmann and Hill", kPlain, C::choice<Generator, &Settings::generator, kGeneratorWords, Change::kTrials>},
-    {"CALCulate:MCARlo:PROBability", kBoth, "<p>", "Coverage probability of the intervals", kQueryLimits, C::number<&Settings::probability, kProbability, Change::kTrials>},
-    {"CALCulate:MCARlo:DISTribution", kBoth, "BOX|NORMal", "Uniform within +-u, or normal with the fit's covariance", kPlain, C::choice<Distribution, &Settings::distribution, kDistributionWords, Change::kTrials>},
+    {"CALCulate:MCARlo:GENerator", kBoth, "WH2006|WH1982", "Generator of Wichmann and Hill", kPlain, C::choice<Generator, &Settings::generator, kGeneratorWords>},
+    {"CALCulate:MCARlo:PROBability", kBoth, "<p>", "Coverage probability of the intervals", kQueryLimits, C::number<&Settings::probability, kProbability>},
+    {"CALCulate:MCARlo:DISTribution", kBoth, "BOX|NORMal", "Uniform within +-u, or normal with the fit's covariance", kPlain, C::choice<Distribution, &Settings::distribution, kDistributionWords>},
     {"CALCulate:MCARlo:BIRGe", kBoth, "<on>", "Uncertainties times the fit's Birge ratio, if above 1", kPlain, C::trials_switch<&Settings::birge>},
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
-    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report},
+    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report_text},
 
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},

@@ -22,91 +22,58 @@ constexpr const char* kLimitWords[] = {"AUTO"};
 
 }  // namespace
 
-void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next,
-                              Change change) noexcept {
-  if (const Refusal refusal = i.conflict_with(change)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  const SettingsError error = check(next);
-  if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
-    return;
-  }
-  const bool has_other_numbers =
-      next.seed != i.settings_.seed || next.generator != i.settings_.generator;
-  i.settings_ = next;
-  i.invalidate(change);
-  if (has_other_numbers) {
-    i.seed_generator();
-  }
-}
-
-void InstrumentCommands::take(Instrument& i, Call& call, const SweepSettings& next) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kSweep)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  const SettingsError error = check(next, i.ports_.analog.format());
-  if (error.setting != nullptr) {
-    call.fail(ErrorCode::kSettingsConflict, error.expectation, error.setting);
-    return;
-  }
-  i.sweep_settings_ = next;
-}
-
 void InstrumentCommands::sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
                                       NumberRule rule) noexcept {
   SweepSettings next = i.default_sweep();
   rule.by_default = next.*member;
-  next = i.sweep_settings_;
+  next = i.sweep_settings();
   if (call.setting(rule, next.*member, next.*member)) {
-    take(i, call, next);
+    report(i.take(next), call);
   }
 }
 
 void InstrumentCommands::sweep_cycles(Instrument& i, Call& call) noexcept {
   SweepSettings next = i.default_sweep();
   const IntegerRule rule = {1, kMaxCycles, next.cycles};
-  next = i.sweep_settings_;
+  next = i.sweep_settings();
   std::int64_t value = 0;
   if (call.integer_setting(rule, next.cycles, value)) {
     next.cycles = static_cast<std::uint32_t>(value);
-    take(i, call, next);
+    report(i.take(next), call);
   }
 }
 
 void InstrumentCommands::filter_gain(Instrument& i, Call& call) noexcept {
   constexpr GainMode kModes[] = {GainMode::kAuto, GainMode::kTrack, GainMode::kFixed};
-  const GainMode mode = i.settings_.gain_mode;
+  const GainMode mode = i.settings().gain_mode;
   const std::size_t word = mode == GainMode::kAuto ? 0 : mode == GainMode::kTrack ? 1 : 2;
-  scpi::NumberOrWord gain{i.settings_.gain, word};
+  scpi::NumberOrWord gain{i.settings().gain, word};
   if (call.number_or_word_setting(kGain, scpi::Words(kGainWords), gain, gain)) {
-    Settings next = i.settings_;
+    Settings next = i.settings();
     next.gain_mode = kModes[gain.word];
     next.gain = gain.number;
-    take(i, call, next, Change::kEnergy);
+    report(i.take(next), call);
   }
 }
 
 void InstrumentCommands::energy_limit(Instrument& i, Call& call) noexcept {
-  scpi::NumberOrWord limit{i.settings_.limit_mps2, i.settings_.limit_is_auto ? 0U : 1U};
+  scpi::NumberOrWord limit{i.settings().limit_mps2, i.settings().limit_is_auto ? 0U : 1U};
   if (call.number_or_word_setting(kLimit, scpi::Words(kLimitWords), limit, limit)) {
-    Settings next = i.settings_;
+    Settings next = i.settings();
     next.limit_is_auto = limit.word == 0;
     next.limit_mps2 = limit.number;
-    take(i, call, next, Change::kEnergy);
+    report(i.take(next), call);
   }
 }
 
 void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
   if (call.is_query()) {
-    for (const std::uint32_t part : i.settings_.seed) {
+    for (const std::uint32_t part : i.settings().seed) {
       call.answer().integer(part);
     }
     return;
   }
-  Settings next = i.settings_;
+  Settings next = i.settings();
   for (std::uint32_t& part : next.seed) {
     std::int64_t value = 0;
     if (!call.integer({1, kMaxSeed, 1}, value)) {
@@ -114,14 +81,14 @@ void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
     }
     part = static_cast<std::uint32_t>(value);
   }
-  take(i, call, next, Change::kTrials);
+  report(i.take(next), call);
   if (!call.failed()) {
-    i.seed_generator();
+    i.restart_random();
   }
 }
 
 void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
-  const ReferenceCalibration& current = i.sweep_settings_.reference;
+  const ReferenceCalibration& current = i.sweep_settings().reference;
   if (call.is_query()) {
     call.answer().number(current.sensitivity[0]).number(current.expanded_percent);
     return;
@@ -129,17 +96,17 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
   SweepSettings next = i.default_sweep();
   const NumberRule sensitivity = {1e-9, 1e9, next.reference.sensitivity[0], nullptr};
   const NumberRule percent = {0.0, kMaxPercent, next.reference.expanded_percent, scpi::kPercent};
-  next = i.sweep_settings_;
+  next = i.sweep_settings();
   if (!call.number(sensitivity, next.reference.sensitivity[0]) ||
       (call.has_more() && !call.number(percent, next.reference.expanded_percent))) {
     return;
   }
   next.reference.count = 1;
-  take(i, call, next);
+  report(i.take(next), call);
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
-  const SweepSettings& current = i.sweep_settings_;
+  const SweepSettings& current = i.sweep_settings();
   if (call.stage() == Call::Stage::kItem) {
     call.answer().number(current.frequency_hz[call.item()]);
     return;
@@ -150,18 +117,16 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
   }
   SweepSettings next = current;
   if (call.numbers(kFrequency, Span<double>(next.frequency_hz), next.frequency_count)) {
-    take(i, call, next);
+    report(i.take(next), call);
   }
 }
 
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kSweep)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
   const SweepSettings by_default = i.default_sweep();
-  i.sweep_settings_.frequency_hz = by_default.frequency_hz;
-  i.sweep_settings_.frequency_count = by_default.frequency_count;
+  SweepSettings next = i.sweep_settings();
+  next.frequency_hz = by_default.frequency_hz;
+  next.frequency_count = by_default.frequency_count;
+  report(i.take(next), call);
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {
@@ -169,7 +134,7 @@ bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slo
   if (!call.integer({0, kSavedSlots - 1, 0}, number)) {
     return false;
   }
-  if (i.ports_.store == nullptr) {
+  if (!i.has_store()) {
     call.fail(ErrorCode::kMemoryError, "this board has no store");
     return false;
   }

@@ -5,18 +5,17 @@
 
 #include "emax/app/base/in_place.hpp"
 #include "emax/app/base/text_writer.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/measure/sweep.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_context.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
 #include "emax/app/settings/settings.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/base/decimal.hpp"
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/semihosting.hpp"
-#include "emax/identify/frequency_response.hpp"
 
 #include "command_line.hpp"
 #include "test_image.hpp"
@@ -102,76 +101,37 @@ bool read_job(Span<const char> command_line, Job& job) noexcept {
   return app::check(job.settings).setting == nullptr;
 }
 
-/// What takes memory. Of the workspaces only one is used at a time.
-class Work {
- public:
-  /// Runs the job on this bench.
-  Status run(const Job& job, sim::SimBench& bench) noexcept {
-    const Status status = job.measures ? measure(bench) : Status::kOk;
-    return status == Status::kOk ? evaluate(job) : status;
+/// @returns Why there is no result, if so.
+Status work(const Job& job, app::Sequencer& sequencer) noexcept {
+  app::Refusal refusal;
+  if (job.measures) {
+    refusal =
+        sequencer.measure_and_evaluate(app::SweepSettings(), job.settings, app::Goal::kReport);
+  } else {
+    sequencer.take(job.device);
+    refusal = sequencer.evaluate(job.settings, app::Goal::kReport);
   }
-
-  void print(const Job& job, const sim::SimBench& bench, app::TextWriter& out) const noexcept;
-
- private:
-  union Workspace {
-    constexpr Workspace() noexcept : none{} {}
-
-    char none;
-    app::SweepWorkspace sweep;
-    app::EvaluationWorkspace evaluation;
-  };
-
-  Status measure(sim::SimBench& bench) noexcept;
-  Status evaluate(const Job& job) noexcept;
-
-  app::Sweep sweep_;
-  FrequencyResponse points_;
-  app::Evaluation evaluation_;
-  Workspace workspace_;
-};
-
-Status Work::measure(sim::SimBench& bench) noexcept {
-  Status status = sweep_.start(app::SweepSettings(), bench, workspace_.sweep);
-  if (status != Status::kOk) {
-    return status;
+  while (sequencer.is_working()) {
+    sequencer.step();
   }
-  while (!sweep_.done()) {
-    sweep_.step(bench, workspace_.sweep);
-  }
-  status = sweep_.status();
-  return status == Status::kOk ? sweep_.copy_to(points_) : status;
+  return refusal ? refusal.status : sequencer.failure().status;
 }
 
-Status Work::evaluate(const Job& job) noexcept {
-  app::EvaluationWorkspace& workspace = workspace_.evaluation;
-  const Status status = job.measures
-                            ? evaluation_.start_from_points(points_, job.settings, workspace)
-                            : evaluation_.start_from_model(job.device, job.settings, workspace);
-  while (status == Status::kOk && !evaluation_.done()) {
-    evaluation_.step(workspace);
-  }
-  return evaluation_.status();
-}
-
-void Work::print(const Job& job, const sim::SimBench& bench, app::TextWriter& out) const noexcept {
-  if (!job.measures) {
-    write_report(evaluation_, app::ReportContext{}, out);
-    return;
-  }
+void print(const Job& job, const sim::SimBench& bench, const app::Sequencer& sequencer,
+           app::TextWriter& out) noexcept {
   const sim::BenchSettings& settings = bench.settings();
   const app::SimulatedBench simulated = {
       settings.seed,
       {settings.device.sensitivity, settings.device.natural_frequency_hz, settings.device.damping}};
-  const app::Measurement measurement = {sweep_, bench.format(), &simulated};
+  const app::Measurement measurement = {sequencer.sweep(), bench.format(), &simulated};
   app::ReportContext context;
-  context.measurement = &measurement;
-  write_report(evaluation_, context, out);
+  context.measurement = job.measures ? &measurement : nullptr;
+  write_report(sequencer.evaluation(), context, out);
 }
 
 int run() noexcept {
   static app::InPlace<Job> job_memory;
-  static app::InPlace<Work> work_memory;
+  static app::InPlace<app::Sequencer> sequencer_memory;
   Status status = board().start();
   ConsoleSink sink(board().console());
   app::TextWriter out(sink);
@@ -182,15 +142,15 @@ int run() noexcept {
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;
   }
-  Work& work = work_memory.make();
+  app::Sequencer& sequencer = sequencer_memory.make(board().stream());
   if (status == Status::kOk) {
-    status = work.run(job, board().stream());
+    status = work(job, sequencer);
   }
   if (status != Status::kOk) {
     out.text(explain(status)).line();
     return kFault;
   }
-  work.print(job, board().stream(), out);
+  print(job, board().stream(), sequencer, out);
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/settings/settings_error.hpp"
 #include "emax/base/status.hpp"
 #include "emax/base/wichmann_hill.hpp"
 #include "emax/energy/energy_search.hpp"
@@ -53,12 +54,6 @@ struct Settings {
 };
 
 static_assert(std::is_trivially_copyable_v<Settings>);
-
-/// What `check()` found wrong: which setting, and in words what it must be.
-struct SettingsError {
-  const char* setting = nullptr;  ///< The option's name, "time" for instance; null if all is well.
-  const char* expectation = nullptr;  ///< "more than 0 and at most 1000 s".
-};
 
 /// Checks each setting against its range, and those that limit one another.
 ///
