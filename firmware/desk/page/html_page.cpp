@@ -219,7 +219,7 @@ void append_energies(std::string& html, const EvaluationResults& results) {
     append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   const EnergyFormat format(result.maximum, result.u);
   append_figure(html, " class=\"first\"",
                 largest + " within the device's uncertainty, E<sub>max</sub>",

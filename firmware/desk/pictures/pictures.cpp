@@ -100,7 +100,7 @@ std::string energy_of(const EvaluationResults& results) {
 }
 
 std::string trials_of(const EvaluationResults& results) {
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   const bool is_box = results.settings.distribution == Distribution::kBox;
   return words_of([&](TextWriter& out) {
     out.integer(result.trials).text(" trials, S, f0 and β ");
@@ -335,7 +335,7 @@ double fastest_hz(const EvaluationResults& results) {
 // Of the time after the device has settled only a part is shown.
 double shown_s(const EvaluationResults& results) {
   constexpr double kBeyondSettling = 1.5;
-  const SettlingTime settling = results.settling_time;
+  const SettlingTime& settling = results.settling_time;
   const double end_s = end_of_table_s(results);
   return settling.found ? std::min(end_s, kBeyondSettling * settling.time_s) : end_s;
 }
@@ -350,7 +350,7 @@ void write_impulse_response(const Picture& picture, const EvaluationResults& res
   const double end_s = end_of_picture_s(results);
   const Scale time = time_scale(end_s);
   const Scale response = scaled(results.peak.value, "V/(m/s)");
-  const SettlingTime settling = results.settling_time;
+  const SettlingTime& settling = results.settling_time;
   const std::string table =
       gnuplot_string(has_start_table(results) ? kStartTable : "impulse_response.csv");
   write_start(out, picture, 500);
@@ -422,7 +422,7 @@ struct EnergyAxis {
 EnergyAxis histogram_axis(const EvaluationResults& results) {
   constexpr double kMargin = 0.04;
   constexpr int kMostDecimals = 5;
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   const double energy = results.energy_v2s();
   const double least = std::min(result.minimum, energy);
   const double most = std::max(result.maximum, energy);
@@ -443,7 +443,7 @@ void write_mark(TextWriter& out, const char* position, const char* style) {
 }
 
 void write_histogram(const Picture& picture, const EvaluationResults& results, TextWriter& out) {
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   const EnergyAxis axis = histogram_axis(results);
   write_start(out, picture, 480);
   const std::string title =

@@ -55,7 +55,8 @@ Problem BenchJob::start(const ReportOptions& options) {
   Status status = bench_.configure(options.bench);
   if (status == Status::kOk) {
     status =
-        sequencer_.measure_and_evaluate(options.sweep, options.settings, app::Goal::kReport).status;
+        sequencer_.measure_and_evaluate(bench_, options.sweep, options.settings, app::Goal::kReport)
+            .status;
   }
   return status == Status::kOk ? Problem{}
                                : fault("the bench does not start: " + in_line(explain(status)));

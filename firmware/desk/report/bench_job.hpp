@@ -43,7 +43,7 @@ class BenchJob final {
   Problem describe_sweep() const;
 
   sim::SimBench bench_;
-  app::Sequencer sequencer_{bench_};
+  app::Sequencer sequencer_;
   app::SimulatedBench simulated_;
 };
 

@@ -76,13 +76,13 @@ Status Evaluation::pursue(const Settings& settings, Goal goal) noexcept {
   }
   drop_incomplete();
   if (!is_same_generator(settings, results_.settings)) {
-    drop_fit_draws();
+    results_.has_fit_draws = false;
   }
   if (!is_same_trials(settings, results_.settings)) {
-    drop_trials();
+    results_.drop_trials();
   }
   if (!is_same_trend(settings, results_.settings)) {
-    drop_trend();
+    results_.drop_trend();
   }
   results_.settings = settings;
   begin_run(goal);
@@ -128,33 +128,12 @@ void Evaluation::stop() noexcept {
 }
 
 void Evaluation::drop_incomplete() noexcept {
-  if (!results_.has_fit_draws) {
-    drop_fit_draws();
-  }
   if (!results_.has_monte_carlo) {
-    drop_trials();
+    results_.drop_trials();
   }
   if (!results_.has_trend) {
-    drop_trend();
+    results_.drop_trend();
   }
-}
-
-void Evaluation::drop_fit_draws() noexcept {
-  results_.fit_draws = {};
-  results_.has_fit_draws = false;
-}
-
-void Evaluation::drop_trials() noexcept {
-  results_.guard = {};
-  results_.adaptive = {};
-  results_.device_at_maximum = {};
-  results_.has_monte_carlo = false;
-}
-
-void Evaluation::drop_trend() noexcept {
-  results_.trend = {};
-  results_.trend_count = 0;
-  results_.has_trend = false;
 }
 
 void Evaluation::lend_trial_store(Span<double> store) noexcept {

@@ -62,28 +62,42 @@ bool is_side_valid(const Device& device, double side) noexcept {
 bool is_uncertainty(double u) noexcept { return u >= 0.0 && is_finite(u); }
 
 Failure check_box(const EvaluationResults& results, const Settings& settings, Goal goal) noexcept {
-  const ParameterBox& u = results.device.u;
-  if (!is_uncertainty(u.sensitivity) || !is_uncertainty(u.natural_frequency_hz) ||
-      !is_uncertainty(u.damping)) {
-    return {Status::kInvalidArgument, Stage::kIdle, kWrongUncertainty};
+  const ParameterBox& box = results.device.u;
+  for (const double u : {box.sensitivity, box.natural_frequency_hz, box.damping}) {
+    if (!is_uncertainty(u)) {
+      return {Status::kInvalidArgument, Stage::kIdle, kWrongUncertainty};
+    }
   }
   const bool is_box = settings.distribution == Distribution::kBox;
   const double widest =
       results.trial_scale(settings) * (is_box ? 1.0 : EnergyTrials::kMaxDeviations);
-  if (wants_trials(goal) &&
-      (!is_side_valid(results.device, -widest) || !is_side_valid(results.device, widest))) {
-    return failure_of_width(Status::kInvalidArgument, settings.distribution);
+  for (const double side : {-widest, widest}) {
+    if (wants_trials(goal) && !is_side_valid(results.device, side)) {
+      return failure_of_width(Status::kInvalidArgument, settings.distribution);
+    }
   }
   return {};
 }
 
-Failure check_grid(const ModalModel& model, const Settings& settings, Stage stage,
-                   double duration_s) noexcept {
-  const Status status = search_cells(model, search_settings(settings, duration_s)) > kMaxCells
-                            ? Status::kTooManyCells
-                            : Status::kOk;
-  return status == Status::kOk ? Failure{}
-                               : failure_of_search(status, settings.method, stage, duration_s);
+/// Whether the grids of the energy and of each time of the trend have room.
+Failure check_grids(const EvaluationResults& results, const Settings& settings,
+                    Goal goal) noexcept {
+  const bool is_paper = settings.method == Method::kPaper;
+  const std::size_t times = 1 + (wants_trend(goal) ? settings.trend_count : 0);
+  for (std::size_t i = 0; i < times; ++i) {
+    const bool is_energy = i == 0;
+    const double duration_s = is_energy ? settings.duration_s : settings.trend_s[i - 1];
+    const std::size_t cells = search_cells(results.model, search_settings(settings, duration_s));
+    if (cells > kMaxCells) {
+      return failure_of_search(Status::kTooManyCells, settings.method,
+                               is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
+    }
+    if (is_energy && is_paper && wants_trials(goal) && results.has_uncertainty() &&
+        cells > GridWorkspace::kMaxTrialCells) {
+      return {Status::kTooManyCells, Stage::kMonteCarlo, kTooManyCellsTrials, duration_s};
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -118,27 +132,11 @@ Failure check_pursuit(const EvaluationResults& results, const Settings& settings
 }
 
 Failure check_goal(const EvaluationResults& results, const Settings& settings, Goal goal) noexcept {
-  Failure failure = check_box(results, settings, goal);
+  const Failure failure = check_box(results, settings, goal);
   if (failure.status != Status::kOk || goal == Goal::kModel) {
     return failure;
   }
-  const ModalModel& model = results.model;
-  const double duration_s = settings.duration_s;
-  failure = check_grid(model, settings, Stage::kEnergy, duration_s);
-  if (failure.status != Status::kOk) {
-    return failure;
-  }
-  if (wants_trials(goal) && settings.method == Method::kPaper && results.has_uncertainty() &&
-      search_cells(model, search_settings(settings, duration_s)) > GridWorkspace::kMaxTrialCells) {
-    return {Status::kTooManyCells, Stage::kMonteCarlo, kTooManyCellsTrials, duration_s};
-  }
-  for (std::size_t i = 0; i < settings.trend_count && wants_trend(goal); ++i) {
-    failure = check_grid(model, settings, Stage::kTrend, settings.trend_s[i]);
-    if (failure.status != Status::kOk) {
-      return failure;
-    }
-  }
-  return {};
+  return check_grids(results, settings, goal);
 }
 
 Failure failure_of_fit(Status status) noexcept {

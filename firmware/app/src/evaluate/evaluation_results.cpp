@@ -8,32 +8,20 @@
 namespace emax::app {
 namespace {
 
-bool is_same(const Accelerometer& a, const Accelerometer& b) noexcept {
-  return a.sensitivity == b.sensitivity && a.natural_frequency_hz == b.natural_frequency_hz &&
-         a.damping == b.damping;
+using Bytes = Span<const unsigned char>;
+
+/// The numbers of a table as they lie in memory; no type here has gaps.
+template <typename T>
+Bytes bytes_of(Span<const T> numbers) noexcept {
+  return {reinterpret_cast<const unsigned char*>(numbers.data()), numbers.size() * sizeof(T)};
 }
 
-bool is_same(const ParameterBox& a, const ParameterBox& b) noexcept {
-  return a.sensitivity == b.sensitivity && a.natural_frequency_hz == b.natural_frequency_hz &&
-         a.damping == b.damping;
-}
-
-bool is_same(const ResponsePoint& a, const ResponsePoint& b) noexcept {
-  return a.frequency_hz == b.frequency_hz && a.amplitude == b.amplitude &&
-         a.phase_rad == b.phase_rad && a.u_amplitude == b.u_amplitude &&
-         a.u_phase_rad == b.u_phase_rad;
-}
-
-bool is_same(const FrequencyResponse& a, const FrequencyResponse& b) noexcept {
-  if (a.size() != b.size()) {
-    return false;
+bool is_same(Bytes a, Bytes b) noexcept {
+  bool is_equal = a.size() == b.size();
+  for (std::size_t i = 0; is_equal && i < a.size(); ++i) {
+    is_equal = a[i] == b[i];
   }
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!is_same(a.points()[i], b.points()[i]) || a.common()[i] != b.common()[i]) {
-      return false;
-    }
-  }
-  return true;
+  return is_equal;
 }
 
 }  // namespace
@@ -51,32 +39,34 @@ void TrialResults::take(const MonteCarlo& monte_carlo, const MonteCarloStore& st
   }
 }
 
-// What has no flag of its own is read only behind that of its stage.
+// What has a flag is nothing without it.
 void EvaluationResults::clear() noexcept {
   device = {};
-  fit_draws = {};
   limit_mps2 = 0.0;
-  peak = {};
-  settling_time = {};
   absolute_error_v = 0.0;
   emax::clear(maximum);
-  guard = {};
-  adaptive = {};
-  device_at_maximum = {};
-  trend = {};
   failure = {};
   trace_count = 0;
-  trend_count = 0;
   source = Source::kPoints;
   stage = Stage::kIdle;
   is_accepted = false;
   has_model = false;
   has_absolute_error = false;
-  has_fit_draws = false;
   has_energy = false;
   has_bound = false;
   is_bound_done = false;
+  has_fit_draws = false;
+  drop_trials();
+  drop_trend();
+}
+
+void EvaluationResults::drop_trials() noexcept {
+  guard = {};
   has_monte_carlo = false;
+}
+
+void EvaluationResults::drop_trend() noexcept {
+  trend_count = 0;
   has_trend = false;
 }
 
@@ -114,12 +104,14 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
 }
 
 bool EvaluationResults::is_of(const Device& other) const noexcept {
-  return is_accepted && source == Source::kModel && is_same(device.estimate, other.estimate) &&
-         is_same(device.u, other.u);
+  return is_accepted && source == Source::kModel &&
+         is_same(bytes_of(Span<const Device>(&device, 1)), bytes_of(Span<const Device>(&other, 1)));
 }
 
 bool EvaluationResults::is_of(const FrequencyResponse& points) const noexcept {
-  return has_fit() && is_same(fit.response(), points);
+  const FrequencyResponse& own = fit.response();
+  return has_fit() && is_same(bytes_of(own.points()), bytes_of(points.points())) &&
+         is_same(bytes_of(own.common()), bytes_of(points.common()));
 }
 
 double EvaluationResults::covariance(std::size_t i, std::size_t j) const noexcept {

@@ -6,7 +6,11 @@
 namespace emax::app {
 
 bool is_same_generator(const Settings& a, const Settings& b) noexcept {
-  return a.generator == b.generator && a.seed == b.seed;
+  bool is_same = a.generator == b.generator;
+  for (std::size_t i = 0; i < a.seed.size(); ++i) {
+    is_same = is_same && a.seed[i] == b.seed[i];
+  }
+  return is_same;
 }
 
 bool is_same_trials(const Settings& a, const Settings& b) noexcept {

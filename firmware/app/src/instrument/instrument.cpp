@@ -13,7 +13,7 @@ constexpr std::size_t kBytesPerPoll = 128;
 }  // namespace
 
 Instrument::Instrument(const Ports& ports, const Board& board) noexcept
-    : ports_(ports), board_(board), sequencer_(ports.analog) {}
+    : ports_(ports), board_(board) {}
 
 void Instrument::start() noexcept {
   session_.power_on();

@@ -23,12 +23,16 @@ struct InstrumentCommands {
   /// Hands what was refused over to the call.
   static void report(const ErrorWords& words, Call& call) noexcept;
 
+  /// Takes new settings over if they can be had together and nothing that runs needs the old ones.
+  static void take(Instrument& i, Call& call, const Settings& next) noexcept;
+  static void take(Instrument& i, Call& call, const SweepSettings& next) noexcept;
+
   template <double Settings::*kMember, const NumberRule& kRule>
   static void number(Instrument& i, Call& call) noexcept {
     Settings next = i.settings();
     if (call.setting(kRule, next.*kMember, next.*kMember) &&
         next.*kMember != i.settings().*kMember) {
-      report(i.take(next), call);
+      take(i, call, next);
     }
   }
 
@@ -41,7 +45,7 @@ struct InstrumentCommands {
     }
     Settings next = i.settings();
     next.*kMember = static_cast<Integer>(value);
-    report(i.take(next), call);
+    take(i, call, next);
   }
 
   template <bool Settings::*kMember>
@@ -49,7 +53,7 @@ struct InstrumentCommands {
     Settings next = i.settings();
     if (call.boolean_setting(next.*kMember, next.*kMember) &&
         next.*kMember != i.settings().*kMember) {
-      report(i.take(next), call);
+      take(i, call, next);
     }
   }
 
@@ -63,7 +67,7 @@ struct InstrumentCommands {
     }
     Settings next = i.settings();
     next.*kMember = static_cast<Enum>(index);
-    report(i.take(next), call);
+    take(i, call, next);
   }
 
   template <double SweepSettings::*kMember, const NumberRule& kRule>

@@ -291,7 +291,7 @@ void InstrumentCommands::absolute_error(Instrument& i, Call& call) noexcept {
 
 void InstrumentCommands::settling_time(Instrument& i, Call& call) noexcept {
   if (i.provide(call, Goal::kModel)) {
-    const SettlingTime settling = results_of(i).settling_time;
+    const SettlingTime& settling = results_of(i).settling_time;
     call.answer().number(settling.found ? settling.time_s
                                         : std::numeric_limits<double>::infinity());
   }
@@ -326,7 +326,7 @@ void InstrumentCommands::monte_carlo(Instrument& i, Call& call) noexcept {
   if (!i.provide(call, Goal::kMonteCarlo)) {
     return;
   }
-  const MonteCarloResult result = results_of(i).trials.result;
+  const MonteCarloResult& result = results_of(i).trials.result;
   const Accelerometer& device = results_of(i).device_at_maximum;
   scpi::Response& out = call.answer();
   out.integer(result.trials).number(result.maximum).number(device.sensitivity);
@@ -359,7 +359,7 @@ bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
     return false;
   }
   if (next.trend_s != i.settings().trend_s || next.trend_count != i.settings().trend_count) {
-    report(i.take(next), call);
+    take(i, call, next);
   }
   return !call.failed();
 }

@@ -1,4 +1,5 @@
 // The commands that set something and answer what is set.
+#include <array>
 #include <limits>
 
 #include "instrument_commands.hpp"
@@ -22,13 +23,21 @@ constexpr const char* kLimitWords[] = {"AUTO"};
 
 }  // namespace
 
+void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next) noexcept {
+  report(i.take(next), call);
+}
+
+void InstrumentCommands::take(Instrument& i, Call& call, const SweepSettings& next) noexcept {
+  report(i.take(next), call);
+}
+
 void InstrumentCommands::sweep_number(Instrument& i, Call& call, double SweepSettings::*member,
                                       NumberRule rule) noexcept {
   SweepSettings next = i.default_sweep();
   rule.by_default = next.*member;
   next = i.sweep_settings();
   if (call.setting(rule, next.*member, next.*member)) {
-    report(i.take(next), call);
+    take(i, call, next);
   }
 }
 
@@ -39,7 +48,7 @@ void InstrumentCommands::sweep_cycles(Instrument& i, Call& call) noexcept {
   std::int64_t value = 0;
   if (call.integer_setting(rule, next.cycles, value)) {
     next.cycles = static_cast<std::uint32_t>(value);
-    report(i.take(next), call);
+    take(i, call, next);
   }
 }
 
@@ -52,7 +61,7 @@ void InstrumentCommands::filter_gain(Instrument& i, Call& call) noexcept {
     Settings next = i.settings();
     next.gain_mode = kModes[gain.word];
     next.gain = gain.number;
-    report(i.take(next), call);
+    take(i, call, next);
   }
 }
 
@@ -62,7 +71,7 @@ void InstrumentCommands::energy_limit(Instrument& i, Call& call) noexcept {
     Settings next = i.settings();
     next.limit_is_auto = limit.word == 0;
     next.limit_mps2 = limit.number;
-    report(i.take(next), call);
+    take(i, call, next);
   }
 }
 
@@ -81,7 +90,7 @@ void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
     }
     part = static_cast<std::uint32_t>(value);
   }
-  report(i.take(next), call);
+  take(i, call, next);
   if (!call.failed()) {
     i.restart_random();
   }
@@ -102,7 +111,7 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
     return;
   }
   next.reference.count = 1;
-  report(i.take(next), call);
+  take(i, call, next);
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
@@ -117,16 +126,18 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
   }
   SweepSettings next = current;
   if (call.numbers(kFrequency, Span<double>(next.frequency_hz), next.frequency_count)) {
-    report(i.take(next), call);
+    take(i, call, next);
   }
 }
 
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
-  const SweepSettings by_default = i.default_sweep();
-  SweepSettings next = i.sweep_settings();
-  next.frequency_hz = by_default.frequency_hz;
-  next.frequency_count = by_default.frequency_count;
-  report(i.take(next), call);
+  SweepSettings next = i.default_sweep();
+  const std::array<double, kMaxPoints> frequency_hz = next.frequency_hz;
+  const std::size_t count = next.frequency_count;
+  next = i.sweep_settings();
+  next.frequency_hz = frequency_hz;
+  next.frequency_count = count;
+  take(i, call, next);
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {

@@ -98,7 +98,7 @@ ErrorWords Instrument::initiate_sweep() noexcept {
   if (is_working()) {
     return kRunning;
   }
-  if (const Refusal refusal = sequencer_.measure(sweep_settings_)) {
+  if (const Refusal refusal = sequencer_.measure(ports_.analog, sweep_settings_)) {
     return words_of(refusal, sequencer_);
   }
   change_device();

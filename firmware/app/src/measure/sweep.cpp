@@ -235,24 +235,25 @@ double Sweep::aim_mps2() const noexcept {
 }
 
 void Sweep::begin_target(double frequency_hz) noexcept {
-  work_.target_ = SweepWorkspace::Target();
-  work_.target_.frequency_hz = frequency_hz;
-  work_.level_scale_ = work_.level_scale_ < 0.5 ? 2.0 * work_.level_scale_ : 1.0;
+  SweepWorkspace& work = work_;
+  const SweepSettings& settings = results_.settings;
+  SweepWorkspace::Target& target = work.target_;
+  target = SweepWorkspace::Target();
+  target.frequency_hz = frequency_hz;
+  work.level_scale_ = work.level_scale_ < 0.5 ? 2.0 * work.level_scale_ : 1.0;
   // Whole periods, to the nearest frame.
-  const double period = work_.format_.sample_rate_hz / frequency_hz;
-  const double by_duration = floor(results_.settings.repeat_s * frequency_hz + 0.999999);
-  const double by_cycles = static_cast<double>(results_.settings.cycles);
-  work_.target_.repeat_frames =
-      frames_of(period * (by_duration > by_cycles ? by_duration : by_cycles));
+  const double period = work.format_.sample_rate_hz / frequency_hz;
+  const double by_duration = floor(settings.repeat_s * frequency_hz + 0.999999);
+  const double by_cycles = static_cast<double>(settings.cycles);
+  target.repeat_frames = frames_of(period * (by_duration > by_cycles ? by_duration : by_cycles));
   // A fit needs a full period and four samples.
-  while (static_cast<double>(work_.target_.repeat_frames) < period ||
-         work_.target_.repeat_frames < 4) {
-    ++work_.target_.repeat_frames;
+  while (static_cast<double>(target.repeat_frames) < period || target.repeat_frames < 4) {
+    ++target.repeat_frames;
   }
-  const double most_v = work_.drive_.max_amplitude_v(frequency_hz);
-  double amplitude_v = work_.drive_per_acceleration_ > 0.0
-                           ? aim_mps2() * work_.drive_per_acceleration_
-                           : kFirstDriveShare * results_.settings.drive_limit_v;
+  const double most_v = work.drive_.max_amplitude_v(frequency_hz);
+  double amplitude_v = work.drive_per_acceleration_ > 0.0
+                           ? aim_mps2() * work.drive_per_acceleration_
+                           : kFirstDriveShare * settings.drive_limit_v;
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
   drive_to(amplitude_v);
 }
@@ -293,21 +294,24 @@ void Sweep::begin_next() noexcept {
 }
 
 void Sweep::finish() noexcept {
-  const double volts = work_.format_.input_full_scale_v;
-  results_.inputs.reference_step_v = volts * work_.reference_monitor_.step();
-  results_.inputs.device_step_v = volts * work_.device_monitor_.step();
-  const bool has_checks = norm(results_.check_before) > 0.0 && norm(results_.check_after) > 0.0;
-  results_.common = common_budget(
-      results_.settings,
-      has_checks ? sqrt(norm(results_.check_after) / norm(results_.check_before)) - 1.0 : 0.0);
-  results_.noise =
-      pooled_noise(Span<const PointScatter>(work_.scatter_).first(results_.point_count),
-                   Span<const double>(results_.settings.frequency_hz).first(results_.point_count),
-                   results_.inputs);
-  for (std::size_t i = 0; i < results_.point_count; ++i) {
-    SweepPoint& point = results_.table[i];
+  SweepResults& results = results_;
+  SweepWorkspace& work = work_;
+  BudgetInputs& inputs = results.inputs;
+  const double volts = work.format_.input_full_scale_v;
+  inputs.reference_step_v = volts * work.reference_monitor_.step();
+  inputs.device_step_v = volts * work.device_monitor_.step();
+  const double before = norm(results.check_before);
+  const double after = norm(results.check_after);
+  const bool has_checks = before > 0.0 && after > 0.0;
+  results.common = common_budget(results.settings, has_checks ? sqrt(after / before) - 1.0 : 0.0);
+  const std::size_t count = results.point_count;
+  results.noise =
+      pooled_noise(Span<const PointScatter>(work.scatter_).first(count),
+                   Span<const double>(results.settings.frequency_hz).first(count), inputs);
+  for (std::size_t i = 0; i < count; ++i) {
+    SweepPoint& point = results.table[i];
     const PointVerdict verdict =
-        point_verdict(work_.scatter_[i], point.point.frequency_hz, results_.noise, results_.inputs);
+        point_verdict(work.scatter_[i], point.point.frequency_hz, results.noise, inputs);
     point.budget = verdict.budget;
     point.residual_percent = verdict.residual_percent;
     point.flagged = point.flagged || verdict.scatters;

@@ -168,7 +168,7 @@ void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
 }
 
 void write_estimates(const EvaluationResults& results, ReportWriter& out) noexcept {
-  const WlspDrawsResult draws = results.fit_draws;
+  const WlspDrawsResult& draws = results.fit_draws;
   out.part(ReportPart::kTable);
   out.part(ReportPart::kHead);
   out.cell(0).text("  ").left(11).text("parameter");
@@ -354,8 +354,8 @@ void write_fit(const EvaluationResults& results, const Measurement* measurement,
 
 void write_error_system(const EvaluationResults& results, ReportWriter& out) noexcept {
   const double duration_s = results.settings.duration_s;
-  const Peak peak = results.peak;
-  const SettlingTime settling = results.settling_time;
+  const Peak& peak = results.peak;
+  const SettlingTime& settling = results.settling_time;
   out.heading(ReportSection::kErrorSystem,
               "ERROR SYSTEM (impulse response k = sensor minus filter)");
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
@@ -519,7 +519,7 @@ void write_trials(const EvaluationResults& results, const MonteCarloResult& resu
 
 void write_maximum(const EvaluationResults& results, const MonteCarloResult& result,
                    ReportWriter& out) noexcept {
-  const Accelerometer at = results.device_at_maximum;
+  const Accelerometer& at = results.device_at_maximum;
   out.label("E_max").scientific(result.maximum, 8).text(" V^2 s in trial ");
   out.integer(result.trial_of_maximum).text(" (the first is 0), with").line();
   out.indent().text("S = ").general(at.sensitivity, 8).text(" V/(m/s^2)");
@@ -558,7 +558,7 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
     out.part(ReportPart::kText).text("  Not run: all uncertainties are zero.\n");
     return;
   }
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   write_trials(results, result, out);
   if (results.trial_scale() > 1.0) {
     out.label("Uncertainties").text("times the Birge ratio, ");

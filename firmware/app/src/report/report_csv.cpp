@@ -137,7 +137,7 @@ void write_histogram_csv(const EvaluationResults& results, TextWriter& out) noex
   if (!results.has_monte_carlo) {
     return;
   }
-  const MonteCarloResult result = results.trials.result;
+  const MonteCarloResult& result = results.trials.result;
   const Span<const std::uint32_t> bins = results.trials.histogram();
   const std::size_t rows = result.maximum > result.minimum ? kHistogramRows : 1;
   const std::size_t bins_per_row = bins.size() / rows;

@@ -188,7 +188,7 @@ void write_filter(const EvaluationResults& results, JsonWriter& json) noexcept {
 }
 
 void write_impulse_response(const EvaluationResults& results, JsonWriter& json) noexcept {
-  const SettlingTime settling = results.settling_time;
+  const SettlingTime& settling = results.settling_time;
   json.open("impulse_response");
   json.number("peak", results.peak.value);
   json.number("peak_time_s", results.peak.time_s);
@@ -236,8 +236,8 @@ void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexc
     json.null("monte_carlo");
     return;
   }
-  const MonteCarloResult result = results.trials.result;
-  const Accelerometer at = results.device_at_maximum;
+  const MonteCarloResult& result = results.trials.result;
+  const Accelerometer& at = results.device_at_maximum;
   json.open("monte_carlo");
   json.integer("trials", result.trials);
   json.number("probability", result.probability);

@@ -6,7 +6,6 @@ namespace emax::app {
 // The device
 
 void Sequencer::take(const Device& device) noexcept {
-  identification_ = {};
   identification_.device = device;
   has_identification_ = false;
   origin_ = Origin::kModel;
@@ -46,7 +45,6 @@ bool Sequencer::clear_points() noexcept {
 void Sequencer::reset() noexcept {
   abort();
   (void)clear_points();
-  identification_ = {};
   has_identification_ = false;
   origin_ = Origin::kNothing;
   evaluation_.clear();
@@ -75,10 +73,11 @@ Obstacle Sequencer::obstacle_to(Part part) const noexcept {
 
 // The sweep
 
-Refusal Sequencer::measure(const SweepSettings& settings) noexcept {
+Refusal Sequencer::measure(hal::AnalogStream& stream, const SweepSettings& settings) noexcept {
   if (is_working()) {
     return {obstacle_to(Part::kDevice)};
   }
+  stream_ = &stream;
   const Status status = sweep_run().start(settings);
   if (status == Status::kInvalidArgument) {
     return {Obstacle::kSweepSetting, status};
@@ -95,9 +94,9 @@ Refusal Sequencer::measure(const SweepSettings& settings) noexcept {
   return {};
 }
 
-Refusal Sequencer::measure_and_evaluate(const SweepSettings& sweep, const Settings& settings,
-                                        Goal goal) noexcept {
-  const Refusal refusal = measure(sweep);
+Refusal Sequencer::measure_and_evaluate(hal::AnalogStream& stream, const SweepSettings& sweep,
+                                        const Settings& settings, Goal goal) noexcept {
+  const Refusal refusal = measure(stream, sweep);
   if (!refusal) {
     evaluation_.clear();
     evaluation_.settings = settings;

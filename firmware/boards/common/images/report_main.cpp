@@ -26,10 +26,12 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kFault = 3;
 
+/// What the arguments ask for: these settings, and the sequencer's device if it has one.
 struct Job {
+  explicit Job(app::Sequencer& with) noexcept : sequencer(with) {}
+
   app::Settings settings;
-  app::Device device;
-  bool measures = true;
+  app::Sequencer& sequencer;
 };
 
 /// Reads numbers with commas between them.
@@ -58,8 +60,8 @@ std::size_t read_numbers(Span<const char> text, Span<double> numbers) noexcept {
 bool take_model(Span<const char> value, Job& job) noexcept {
   std::array<double, 7> numbers = {};
   const std::size_t count = read_numbers(value, numbers);
-  job.device = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
-  job.measures = false;
+  job.sequencer.take(
+      app::Device{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}});
   return count == 3 || count == 6;
 }
 
@@ -101,56 +103,53 @@ bool read_job(Span<const char> command_line, Job& job) noexcept {
   return app::check(job.settings).setting == nullptr;
 }
 
+bool measures(const Job& job) noexcept { return job.sequencer.origin() != app::Origin::kModel; }
+
 /// @returns Why there is no result, if so.
-Status work(const Job& job, app::Sequencer& sequencer) noexcept {
-  app::Refusal refusal;
-  if (job.measures) {
-    refusal =
-        sequencer.measure_and_evaluate(app::SweepSettings(), job.settings, app::Goal::kReport);
-  } else {
-    sequencer.take(job.device);
-    refusal = sequencer.evaluate(job.settings, app::Goal::kReport);
-  }
+Status work(const Job& job, sim::SimBench& bench) noexcept {
+  app::Sequencer& sequencer = job.sequencer;
+  const app::Refusal refusal =
+      measures(job) ? sequencer.measure_and_evaluate(bench, app::SweepSettings(), job.settings,
+                                                     app::Goal::kReport)
+                    : sequencer.evaluate(job.settings, app::Goal::kReport);
   while (sequencer.is_working()) {
     sequencer.step();
   }
   return refusal ? refusal.status : sequencer.failure().status;
 }
 
-void print(const Job& job, const sim::SimBench& bench, const app::Sequencer& sequencer,
-           app::TextWriter& out) noexcept {
+void print(const Job& job, const sim::SimBench& bench, app::TextWriter& out) noexcept {
   const sim::BenchSettings& settings = bench.settings();
   const app::SimulatedBench simulated = {
       settings.seed,
       {settings.device.sensitivity, settings.device.natural_frequency_hz, settings.device.damping}};
-  const app::Measurement measurement = {sequencer.sweep(), bench.format(), &simulated};
+  const app::Measurement measurement = {job.sequencer.sweep(), bench.format(), &simulated};
   app::ReportContext context;
-  context.measurement = job.measures ? &measurement : nullptr;
-  write_report(sequencer.evaluation(), context, out);
+  context.measurement = measures(job) ? &measurement : nullptr;
+  write_report(job.sequencer.evaluation(), context, out);
 }
 
 int run() noexcept {
   static app::InPlace<Job> job_memory;
-  static app::InPlace<app::Sequencer> sequencer_memory;
+  static app::Sequencer sequencer;
   Status status = board().start();
   ConsoleSink sink(board().console());
   app::TextWriter out(sink);
-  Job& job = job_memory.make();
+  Job& job = job_memory.make(sequencer);
   std::array<char, kCommandLineRoom> line = {};
   if (!read_job({line.data(), read_command_line(line)}, job)) {
     out.text(
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;
   }
-  app::Sequencer& sequencer = sequencer_memory.make(board().stream());
   if (status == Status::kOk) {
-    status = work(job, sequencer);
+    status = work(job, board().stream());
   }
   if (status != Status::kOk) {
     out.text(explain(status)).line();
     return kFault;
   }
-  print(job, board().stream(), sequencer, out);
+  print(job, board().stream(), out);
   return 0;
 }
 

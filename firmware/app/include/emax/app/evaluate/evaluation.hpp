@@ -113,9 +113,6 @@ class Evaluation {
   void begin_run(Goal goal) noexcept;
   void go_on() noexcept;
   void drop_incomplete() noexcept;
-  void drop_fit_draws() noexcept;
-  void drop_trials() noexcept;
-  void drop_trend() noexcept;
   Status fail(const Failure& failure) noexcept;
   void begin_model() noexcept;
   void step_model() noexcept;

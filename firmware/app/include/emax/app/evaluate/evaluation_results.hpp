@@ -72,8 +72,8 @@ struct GuardResults {
 /// They know what they were made from: `holds()` and `is_of()` are the only truth on what may be
 /// shown as the answer for a device and settings.
 struct EvaluationResults {
-  /// How many energies of the fixed point are kept.
-  static constexpr std::size_t kTraceLength = 64;
+  /// How many energies of the fixed point are kept: some more than the report shows.
+  static constexpr std::size_t kTraceLength = 16;
 
   Settings settings = kNoSettings;  ///< That they were made with.
   Device device;
@@ -112,6 +112,9 @@ struct EvaluationResults {
 
   /// Forgets everything but the settings, in place: nothing passes over the stack.
   void clear() noexcept;
+  /// Forgets these parts of them.
+  void drop_trials() noexcept;
+  void drop_trend() noexcept;
 
   bool done() const noexcept { return stage == Stage::kDone || stage == Stage::kFailed; }
   Status status() const noexcept { return failure.status; }

@@ -63,8 +63,8 @@ struct Refusal {
 /// Measures with the sweep, evaluates points or a device, and runs the fixed point, one of them at
 /// a time and in short steps.
 ///
-///     Sequencer sequencer(stream);
-///     sequencer.measure_and_evaluate(sweep_settings, settings, Goal::kReport);
+///     static Sequencer sequencer;
+///     sequencer.measure_and_evaluate(stream, sweep_settings, settings, Goal::kReport);
 ///     while (sequencer.is_working()) {
 ///       sequencer.step();
 ///     }
@@ -73,14 +73,9 @@ struct Refusal {
 /// to a question of now, `holds()` says.
 ///
 /// All memory is inside: the results of sweep and evaluation, the points, and one workspace for
-/// what runs. While nothing runs, anybody may borrow that. 104 KiB.
+/// what runs. While nothing runs, anybody may borrow that. 104 KiB, all zero before use.
 class Sequencer {
  public:
-  /// The stream outlives this object.
-  explicit Sequencer(hal::AnalogStream& stream) noexcept : stream_(stream) {}
-  Sequencer(const Sequencer&) = delete;
-  Sequencer& operator=(const Sequencer&) = delete;
-
   // What is evaluated. Each change is for when `obstacle_to(Part::kDevice)` is kNone.
 
   /// A device by its parameters.
@@ -106,11 +101,13 @@ class Sequencer {
   // Work. Each start answers a refusal and changes nothing but what it says, or begins.
 
   /// A sweep. With its start the points of before are gone, and the device is the one measured.
-  Refusal measure(const SweepSettings& settings) noexcept;
+  ///
+  /// @param[in] stream Nobody else uses it until the sweep has ended.
+  Refusal measure(hal::AnalogStream& stream, const SweepSettings& settings) noexcept;
 
   /// A sweep, and with its points an evaluation.
-  Refusal measure_and_evaluate(const SweepSettings& sweep, const Settings& settings,
-                               Goal goal) noexcept;
+  Refusal measure_and_evaluate(hal::AnalogStream& stream, const SweepSettings& sweep,
+                               const Settings& settings, Goal goal) noexcept;
 
   /// An evaluation towards this goal. What is complete and holds for these settings is kept, so
   /// nothing may be left to do: it has then ended at once, and `failure()` says how.
@@ -185,7 +182,7 @@ class Sequencer {
     FixedPointRun fixed_point;
   };
 
-  Sweep sweep_run() noexcept { return Sweep(sweep_, workspace_.sweep, stream_); }
+  Sweep sweep_run() noexcept { return Sweep(sweep_, workspace_.sweep, *stream_); }
   Evaluation evaluation_run() noexcept { return Evaluation(evaluation_, workspace_.evaluation); }
   bool is_of_device() const noexcept;
   bool needs_lost_fit(const Settings& settings) const noexcept;
@@ -195,8 +192,9 @@ class Sequencer {
   void end_sweep() noexcept;
   void end_evaluation() noexcept;
 
-  hal::AnalogStream& stream_;
-  Identification identification_;  // Or the device by its parameters.
+  hal::AnalogStream* stream_ = nullptr;  // Of the sweep that runs.
+  // Or the device by its parameters; zero, unlike its defaults.
+  Identification identification_ = {Source::kPoints, {}, {}, 0.0, 0};
   FrequencyResponse points_;
   SweepResults sweep_;
   EvaluationResults evaluation_;
@@ -211,5 +209,7 @@ class Sequencer {
   bool evaluates_next_ = false;  // The sweep's points.
   bool has_fixed_point_ = false;
 };
+
+static_assert(std::is_trivially_copyable_v<Sequencer>);
 
 }  // namespace emax::app
