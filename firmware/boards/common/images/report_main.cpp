@@ -89,8 +89,9 @@ bool take_option(Span<const char> name, Span<const char> value, Job& job) noexce
   return is(name, "--trend") && take_trend(value, job);
 }
 
-bool read_job(Span<const char> command_line, Job& job) noexcept {
-  Words words(command_line);
+bool read_job(Job& job) noexcept {
+  std::array<char, kCommandLineRoom> line = {};
+  Words words({line.data(), read_command_line(line)});
   // The emulator puts the path of the image in front.
   while (!words.done() && !is(words.next(), "report")) {
   }
@@ -136,8 +137,7 @@ int run() noexcept {
   ConsoleSink sink(board().console());
   app::TextWriter out(sink);
   Job& job = job_memory.make(sequencer);
-  std::array<char, kCommandLineRoom> line = {};
-  if (!read_job({line.data(), read_command_line(line)}, job)) {
+  if (!read_job(job)) {
     out.text(
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;

@@ -75,27 +75,8 @@ struct EvaluationResults {
   /// How many energies of the fixed point are kept: some more than the report shows.
   static constexpr std::size_t kTraceLength = 16;
 
+  // Large ones last: what is near the front is reached by shorter instructions.
   Settings settings = kNoSettings;  ///< That they were made with.
-  Device device;
-  Wlsp fit;                   ///< Source::kPoints only.
-  WlspDrawsResult fit_draws;  ///< With `has_fit_draws`.
-  ModalModel model;           ///< At the estimate.
-  double limit_mps2 = 0.0;    ///< a.
-  Peak peak;
-  SettlingTime settling_time;     ///< To 5 % of the peak.
-  double absolute_error_v = 0.0;  ///< The largest |y(t)| of any signal within +-a of this T.
-  MaximumEnergy maximum;          ///< Its energy is for a = 1; `energy_v2s()` is the one to show.
-  double bound_v2s = 0.0;         ///< No signal within +-a of this T has more; with `has_bound`.
-  GuardResults guard;
-  TrialResults trials;  ///< With `has_monte_carlo`.
-  AdaptiveResult adaptive = all_zero<AdaptiveResult>();
-  Accelerometer device_at_maximum;  ///< Of the trial with the largest energy.
-  TrendPoint trend_table[kMaxTrendPoints] = {};
-  Trend trend = all_zero<Trend>();  ///< Energies in V^2 s.
-  Failure failure;
-  double trace_v2s[kTraceLength] = {};  ///< `trace()` is the part in use.
-  std::size_t trace_count = 0;
-  std::size_t trend_count = 0;
   Source source = Source::kPoints;
   Stage stage = Stage::kIdle;
   bool is_accepted = false;  ///< Device and model.
@@ -109,6 +90,26 @@ struct EvaluationResults {
   bool is_bound_done = false;  ///< A bound was looked for: proven or given up.
   bool has_monte_carlo = false;
   bool has_trend = false;
+  std::size_t trace_count = 0;
+  std::size_t trend_count = 0;
+  Failure failure;
+  Device device;
+  double limit_mps2 = 0.0;  ///< a.
+  Peak peak;
+  SettlingTime settling_time;     ///< To 5 % of the peak.
+  double absolute_error_v = 0.0;  ///< The largest |y(t)| of any signal within +-a of this T.
+  double bound_v2s = 0.0;         ///< No signal within +-a of this T has more; with `has_bound`.
+  GuardResults guard;
+  AdaptiveResult adaptive = all_zero<AdaptiveResult>();
+  Accelerometer device_at_maximum;               ///< Of the trial with the largest energy.
+  Trend trend = all_zero<Trend>();               ///< Energies in V^2 s.
+  WlspDrawsResult fit_draws;                     ///< With `has_fit_draws`.
+  TrialResults trials;                           ///< With `has_monte_carlo`.
+  TrendPoint trend_table[kMaxTrendPoints] = {};  ///< `trend_points()` is the part in use.
+  double trace_v2s[kTraceLength] = {};           ///< `trace()` is the part in use.
+  MaximumEnergy maximum;  ///< Its energy is for a = 1; `energy_v2s()` is the one to show.
+  ModalModel model;       ///< At the estimate.
+  Wlsp fit;               ///< Source::kPoints only.
 
   /// Forgets everything but the settings, in place: nothing passes over the stack.
   void clear() noexcept;

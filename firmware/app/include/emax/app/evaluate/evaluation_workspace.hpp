@@ -60,9 +60,6 @@ class EvaluationWorkspace {
     TrialPart trial;
   };
 
-  GridWorkspace grid_;
-  EnergySearch search_;
-  Part part_;
   Span<double> store_;
   double progress_ = 0.0;
   std::uint32_t stored_ = 0;  // Trials 0 to stored_ - 1 are in the store.
@@ -70,6 +67,9 @@ class EvaluationWorkspace {
   Goal goal_ = Goal::kModel;
   bool trial_runs_ = false;
   bool trend_search_runs_ = false;
+  EnergySearch search_;
+  Part part_;
+  GridWorkspace grid_;
 };
 
 static_assert(std::is_trivially_copyable_v<EvaluationWorkspace>);

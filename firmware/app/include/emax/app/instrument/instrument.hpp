@@ -187,7 +187,6 @@ class Instrument {
   Settings settings_;
   SweepSettings sweep_settings_ = SweepSettings(kAllZero);
   WichmannHill generator_;
-  Sequencer sequencer_;
   std::uint64_t deadlock_since_us_ = 0;
   bool is_fit_kept_ = false;    // The fit of these points is in the store.
   bool is_background_ = false;  // The job was begun by INITiate.
@@ -197,6 +196,7 @@ class Instrument {
   bool was_connected_ = false;
   bool is_deadlocked_ = false;
   bool has_acted_ = false;
+  Sequencer sequencer_;
 };
 
 // Beside the sequencer: settings, console, status.

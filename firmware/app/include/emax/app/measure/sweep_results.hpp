@@ -41,8 +41,7 @@ enum class SweepStage : std::uint8_t {
 /// The results of a sweep, while it runs and afterwards. 11 KiB, all zero before the first one.
 struct SweepResults {
   SweepSettings settings = SweepSettings(kAllZero);
-  BudgetInputs inputs;                            ///< With both channels without drive.
-  std::array<SweepPoint, kMaxPoints> table = {};  ///< `points()` is the part in use.
+  BudgetInputs inputs;  ///< With both channels without drive.
   CommonBudget common;  ///< Complete when `done()`; without drift unless both checks were measured.
   ChannelNoise noise;   ///< Pooled over the points, when `done()`.
   SettingsError refused;  ///< What the last start refused, if it did.
@@ -68,6 +67,7 @@ struct SweepResults {
   /// * kStopped: `Sweep::stop()`.
   /// What disturbs a repeat is looked at twice: the frequency is measured again, once.
   Status status = Status::kOk;
+  std::array<SweepPoint, kMaxPoints> table = {};  ///< `points()` is the part in use.
 
   /// @returns True unless a sweep runs.
   bool done() const noexcept {

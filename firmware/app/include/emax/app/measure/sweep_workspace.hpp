@@ -45,13 +45,7 @@ class SweepWorkspace {
   DriveOscillator drive_;
   ChannelMonitor reference_monitor_;
   ChannelMonitor device_monitor_;
-  SilenceRecord silence_;
-  FrameSineFit fit_;
   Target target_;
-  Repeats repeats_;
-  std::array<PointScatter, kMaxPoints> scatter_ = {};
-  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
-  std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
   Complex last_ratio_;                   // Of the frequency before; zero if there was none.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
@@ -64,6 +58,12 @@ class SweepWorkspace {
   Activity activity_ = Activity::kSilence;
   bool block_is_spent_ = false;  // A new drive was ordered: the rest of the block is of no use.
   bool is_lowering_ = false;
+  FrameSineFit fit_;
+  Repeats repeats_;
+  SilenceRecord silence_;
+  std::array<PointScatter, kMaxPoints> scatter_ = {};
+  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
+  std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
 };
 
 static_assert(std::is_trivially_copyable_v<SweepWorkspace>);

@@ -34,12 +34,12 @@ class FixedPointRun {
   double energy_v2s(std::size_t iterate) const noexcept { return a2_ * trace_[iterate]; }
 
  private:
-  GridWorkspace grid_;
-  PhiOperator phi_;
   FixedPoint run_;
-  double trace_[kMaxIterations + 1] = {};  // For a = 1.
   double a2_ = 0.0;
   std::size_t most_ = 0;
+  PhiOperator phi_;
+  double trace_[kMaxIterations + 1] = {};  // For a = 1.
+  GridWorkspace grid_;
 };
 
 static_assert(std::is_trivially_copyable_v<FixedPointRun>);

@@ -193,12 +193,6 @@ class Sequencer {
   void end_evaluation() noexcept;
 
   hal::AnalogStream* stream_ = nullptr;  // Of the sweep that runs.
-  // Or the device by its parameters; zero, unlike its defaults.
-  Identification identification_ = {Source::kPoints, {}, {}, 0.0, 0};
-  FrequencyResponse points_;
-  SweepResults sweep_;
-  EvaluationResults evaluation_;
-  Workspace workspace_;
   Span<double> trial_store_;
   Refusal failure_;
   Job job_ = Job::kNone;
@@ -208,6 +202,12 @@ class Sequencer {
   bool has_identification_ = false;
   bool evaluates_next_ = false;  // The sweep's points.
   bool has_fixed_point_ = false;
+  // Or the device by its parameters; zero, unlike its defaults.
+  Identification identification_ = {Source::kPoints, {}, {}, 0.0, 0};
+  FrequencyResponse points_;
+  SweepResults sweep_;
+  EvaluationResults evaluation_;
+  Workspace workspace_;
 };
 
 static_assert(std::is_trivially_copyable_v<Sequencer>);
