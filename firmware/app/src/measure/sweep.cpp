@@ -1,4 +1,4 @@
-// The sequencer: what one block does, and what comes after what.
+// What one block does, and what comes after what.
 #include "emax/app/measure/sweep.hpp"
 
 #include <algorithm>
