@@ -8,20 +8,10 @@
 namespace emax::app {
 namespace {
 
-using Bytes = Span<const unsigned char>;
-
-/// The numbers of a table as they lie in memory; no type here has gaps.
+/// Whether two tables of numbers are the same, bit for bit; no type here has gaps.
 template <typename T>
-Bytes bytes_of(Span<const T> numbers) noexcept {
-  return {reinterpret_cast<const unsigned char*>(numbers.data()), numbers.size() * sizeof(T)};
-}
-
-bool is_same(Bytes a, Bytes b) noexcept {
-  bool is_equal = a.size() == b.size();
-  for (std::size_t i = 0; is_equal && i < a.size(); ++i) {
-    is_equal = a[i] == b[i];
-  }
-  return is_equal;
+bool is_same(Span<const T> a, Span<const T> b) noexcept {
+  return a.size() == b.size() && is_same_memory(a.data(), b.data(), a.size() * sizeof(T));
 }
 
 }  // namespace
@@ -105,13 +95,13 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
 
 bool EvaluationResults::is_of(const Device& other) const noexcept {
   return is_accepted && source == Source::kModel &&
-         is_same(bytes_of(Span<const Device>(&device, 1)), bytes_of(Span<const Device>(&other, 1)));
+         is_same_memory(&device, &other, sizeof device);
 }
 
 bool EvaluationResults::is_of(const FrequencyResponse& points) const noexcept {
   const FrequencyResponse& own = fit.response();
-  return has_fit() && is_same(bytes_of(own.points()), bytes_of(points.points())) &&
-         is_same(bytes_of(own.common()), bytes_of(points.common()));
+  return has_fit() && is_same(own.points(), points.points()) &&
+         is_same(own.common(), points.common());
 }
 
 double EvaluationResults::covariance(std::size_t i, std::size_t j) const noexcept {

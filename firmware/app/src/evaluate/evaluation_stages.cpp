@@ -71,7 +71,7 @@ void Evaluation::step_stage() noexcept {
 double Evaluation::progress_of_stage() const noexcept {
   switch (results_.stage) {
     case Stage::kFitDraws:
-      return static_cast<double>(work_.part_.fit.draws.made()) / kFitDraws;
+      return static_cast<double>(work_.draws_.made()) / kFitDraws;
     case Stage::kEnergy:
       return work_.search_.progress();
     case Stage::kBound:
@@ -84,7 +84,7 @@ double Evaluation::progress_of_stage() const noexcept {
                  ? work_.part_.trial.monte_carlo.progress()
                  : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
     case Stage::kGuard:
-      return work_.part_.trial.guard.progress();
+      return work_.guard_.progress();
     case Stage::kTrend: {
       const double running = work_.trend_search_runs_ ? work_.search_.progress() : 0.0;
       return (static_cast<double>(results_.trend_count) + running) /
@@ -158,8 +158,7 @@ WichmannHill Evaluation::seeded_generator() const noexcept {
 void Evaluation::begin_fit_draws() noexcept {
   WichmannHill generator = seeded_generator();
   generator.jump(kFitDrawsOffset);
-  auto* const part = new (&work_.part_.fit) EvaluationWorkspace::FitPart;
-  const Status status = part->draws.start(results_.fit, kFitDraws, generator);
+  const Status status = work_.draws_.start(results_.fit, kFitDraws, generator);
   if (status != Status::kOk) {
     (void)fail({status, Stage::kFitDraws, explain(status)});
     return;
@@ -168,7 +167,7 @@ void Evaluation::begin_fit_draws() noexcept {
 }
 
 void Evaluation::step_fit_draws() noexcept {
-  WlspDraws& draws = work_.part_.fit.draws;
+  WlspDraws& draws = work_.draws_;
   draws.step(results_.fit, kDrawsPerStep);
   if (draws.done()) {
     results_.fit_draws = draws.result();
@@ -378,15 +377,14 @@ void Evaluation::step_monte_carlo() noexcept {
     go_on();
     return;
   }
-  part.guard.start(work_.trials_, result.trial_of_maximum);
+  work_.guard_.start(work_.trials_, result.trial_of_maximum);
   work_.progress_ = 0.0;
   results_.stage = Stage::kGuard;
 }
 
 void Evaluation::step_guard() noexcept {
-  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
-  EnergyGuard& guard = part.guard;
-  (void)guard.step(part.trials, results_.maximum, work_.search_,
+  EnergyGuard& guard = work_.guard_;
+  (void)guard.step(work_.part_.trial.trials, results_.maximum, work_.search_,
                    work_.grid_);  // A search that fails counts as disagreement.
   if (guard.done()) {
     results_.guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};

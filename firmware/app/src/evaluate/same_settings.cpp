@@ -35,4 +35,14 @@ bool is_same_energy(const Settings& a, const Settings& b) noexcept {
          (!is_paper || (a.step_s == b.step_s && a.iterations == b.iterations));
 }
 
+bool is_same_memory(const void* a, const void* b, std::size_t bytes) noexcept {
+  const auto* const first = static_cast<const unsigned char*>(a);
+  const auto* const second = static_cast<const unsigned char*>(b);
+  bool is_same = true;
+  for (std::size_t i = 0; is_same && i < bytes; ++i) {
+    is_same = first[i] == second[i];
+  }
+  return is_same;
+}
+
 }  // namespace emax::app

@@ -1,5 +1,7 @@
-// Which settings lead to the same results.
+// Which settings and numbers lead to the same results.
 #pragma once
+
+#include <cstddef>
 
 #include "emax/app/settings/settings.hpp"
 
@@ -16,5 +18,8 @@ bool is_same_trend(const Settings& a, const Settings& b) noexcept;
 
 /// Whether model, limit and energy are the same.
 bool is_same_energy(const Settings& a, const Settings& b) noexcept;
+
+/// Whether so many bytes are the same.
+bool is_same_memory(const void* a, const void* b, std::size_t bytes) noexcept;
 
 }  // namespace emax::app

@@ -40,9 +40,6 @@ class EvaluationWorkspace {
     SettlingSearch settling;
     AbsoluteError absolute_error;
   };
-  struct FitPart : InPlace {
-    WlspDraws draws;
-  };
   struct BoundPart : InPlace {
     EnergyBound bound;
   };
@@ -50,12 +47,10 @@ class EvaluationWorkspace {
     EnergyTrials trials;
     MonteCarlo monte_carlo;
     AdaptiveTrials adaptive;
-    EnergyGuard guard;
   };
   union Part {
     constexpr Part() noexcept : trial() {}
     ModelPart model;
-    FitPart fit;
     BoundPart bound;
     TrialPart trial;
   };
@@ -67,6 +62,8 @@ class EvaluationWorkspace {
   Goal goal_ = Goal::kModel;
   bool trial_runs_ = false;
   bool trend_search_runs_ = false;
+  EnergyGuard guard_;
+  WlspDraws draws_;
   EnergySearch search_;
   Part part_;
   GridWorkspace grid_;
