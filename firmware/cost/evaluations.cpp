@@ -45,17 +45,17 @@ Status run(const app::Settings& settings, Evaluations& work, StageCosts& costs) 
   if (status != Status::kOk) {
     return status;
   }
+  app::Evaluation evaluation(work.results, work.workspace);
   StageCost& start = costs[static_cast<std::size_t>(app::Stage::kIdle)];
-  start.sum = ticks_of(
-      [&] { status = work.evaluation.start_from_points(work.points, settings, work.workspace); });
+  start.sum = ticks_of([&] { status = evaluation.start_from_points(work.points, settings); });
   start.longest = start.sum;
-  while (status == Status::kOk && !work.evaluation.done()) {
-    StageCost& cost = costs[static_cast<std::size_t>(work.evaluation.stage())];
-    const Ticks ticks = ticks_of([&] { work.evaluation.step(work.workspace); });
+  while (status == Status::kOk && !evaluation.done()) {
+    StageCost& cost = costs[static_cast<std::size_t>(work.results.stage)];
+    const Ticks ticks = ticks_of([&] { evaluation.step(); });
     cost.sum += ticks;
     cost.longest = ticks > cost.longest ? ticks : cost.longest;
   }
-  return status == Status::kOk ? work.evaluation.status() : status;
+  return status == Status::kOk ? work.results.status() : status;
 }
 
 }  // namespace

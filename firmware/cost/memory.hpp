@@ -6,8 +6,10 @@
 #include <cstdint>
 
 #include "emax/app/base/in_place.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/measure/sweep.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/evaluate/evaluation_workspace.hpp"
+#include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/signs.hpp"
 #include "emax/bound/energy_bound.hpp"
 #include "emax/energy/energy_search.hpp"
@@ -43,12 +45,12 @@ struct Energies {
 
 struct Evaluations {
   FrequencyResponse points;
-  app::Evaluation evaluation;
+  app::EvaluationResults results;
   app::EvaluationWorkspace workspace;
 };
 
 struct Sweeps {
-  app::Sweep sweep;
+  app::SweepResults results;
   app::SweepWorkspace workspace;
 };
 

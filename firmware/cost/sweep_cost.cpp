@@ -80,17 +80,18 @@ Status count_sweep(Rows& rows) noexcept {
   settings.frequency_count = kFrequencies_hz.size();
   settings.check_hz = kFrequencies_hz.front();
   EchoStream stream;
-  const Status status = work.sweep.start(settings, stream, work.workspace);
+  app::Sweep sweep(work.results, work.workspace, stream);
+  const Status status = sweep.start(settings);
   if (status != Status::kOk) {
     return status;
   }
   Ticks ticks = 0;
-  while (!work.sweep.done()) {
-    ticks += ticks_of([&] { work.sweep.step(stream, work.workspace); });
+  while (!sweep.done()) {
+    ticks += ticks_of([&] { sweep.step(); });
   }
-  const std::uint64_t frames = work.sweep.blocks() * kFormat.block_frames;
+  const std::uint64_t frames = work.results.blocks * kFormat.block_frames;
   rows.add("sweep_frame", instructions_of((ticks - stream.own_ticks()) / frames));
-  return work.sweep.status();
+  return work.results.status;
 }
 
 }  // namespace emax::cost

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "emax/app/measure/sweep.hpp"
+#include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "hal/bench_run.hpp"
@@ -23,9 +25,9 @@ inline std::complex<double> response_of(const sim::Device& device, double sensit
 }
 
 struct SweepRun {
-  sim::SimBench bench;
-  app::Sweep sweep;
-  app::SweepWorkspace work;
+  emax::sim::SimBench bench;
+  emax::app::SweepResults sweep;
+  emax::app::SweepWorkspace work;
   std::uint64_t last_step_frames = 0;  ///< Of the bench, in the step that ended the sweep.
 
   explicit SweepRun(const sim::BenchSettings& settings,
@@ -34,11 +36,15 @@ struct SweepRun {
     EXPECT_EQ(bench.configure(settings), Status::kOk);
   }
 
-  void to_end(const app::SweepSettings& settings) {
-    ASSERT_EQ(sweep.start(settings, bench, work), Status::kOk);
+  emax::Status start(const emax::app::SweepSettings& settings) { return run().start(settings); }
+  void step() { run().step(); }
+  void stop() { run().stop(); }
+
+  void to_end(const emax::app::SweepSettings& settings) {
+    ASSERT_EQ(start(settings), emax::Status::kOk);
     while (!sweep.done()) {
       const std::uint64_t before = bench.clock_frames();
-      sweep.step(bench, work);
+      step();
       last_step_frames = bench.clock_frames() - before;
     }
     EXPECT_FALSE(bench.running());
@@ -52,6 +58,9 @@ struct SweepRun {
     EXPECT_LE(bench.dac().max_step,
               settings.slew_v_per_s / bench.format().sample_rate_hz * volt + 0.5);
   }
+
+ private:
+  emax::app::Sweep run() { return {sweep, work, bench}; }
 };
 
 }  // namespace emax::test

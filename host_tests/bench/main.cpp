@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/base/wichmann_hill.hpp"
 #include "emax/energy/energy_search.hpp"
 #include "emax/energy/phi_buffer.hpp"
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   add_size<emax::Wlsp>("Wlsp");
   add_size<emax::WlspDraws>("WlspDraws");
   add_size<emax::MonteCarlo>("MonteCarlo");
-  add_size<emax::app::Evaluation>("app::Evaluation");
+  add_size<emax::app::EvaluationResults>("app::EvaluationResults");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
     return 1;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "emax/app/measure/sweep.hpp"
+#include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/identify/frequency_response.hpp"
 #include "emax/identify/wlsp.hpp"
 #include "emax/sim/sim_bench.hpp"
@@ -35,8 +37,9 @@ void count(const emax::WlspFit& fit, const emax::sim::Device& truth, Inside& ins
 
 TEST(Coverage, OfFiveHundredBenches) {
   static emax::sim::SimBench bench;
-  static emax::app::Sweep sweep;
+  static emax::app::SweepResults results;
   static emax::app::SweepWorkspace work;
+  emax::app::Sweep sweep(results, work, bench);
   static emax::FrequencyResponse response;
   static emax::Wlsp wlsp;
   Inside with_common;
@@ -47,12 +50,12 @@ TEST(Coverage, OfFiveHundredBenches) {
     emax::sim::BenchSettings settings;
     settings.seed = seed;
     ASSERT_EQ(bench.configure(settings), Status::kOk);
-    ASSERT_EQ(sweep.start(emax::app::default_sweep_settings(), bench, work), Status::kOk);
+    ASSERT_EQ(sweep.start(emax::app::default_sweep_settings()), Status::kOk);
     while (!sweep.done()) {
-      sweep.step(bench, work);
+      sweep.step();
     }
-    ASSERT_EQ(sweep.status(), Status::kOk) << "seed " << seed;
-    ASSERT_EQ(sweep.copy_to(response), Status::kOk);
+    ASSERT_EQ(results.status, Status::kOk) << "seed " << seed;
+    ASSERT_EQ(results.copy_to(response), Status::kOk);
     frames += bench.clock_frames();
 
     ASSERT_EQ(wlsp.fit(response), Status::kOk) << "seed " << seed;

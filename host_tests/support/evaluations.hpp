@@ -7,6 +7,8 @@
 #include <string>
 
 #include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/evaluate/evaluation_workspace.hpp"
 
 #include "support/paper_device.hpp"
 #include "support/table1.hpp"
@@ -60,9 +62,9 @@ inline FrequencyResponse synthetic_points(double scatter, unsigned seed = 1) {
 }
 
 /// One is enough for a test program. Left as it is from use to use.
-inline app::Evaluation& shared_evaluation() {
-  static app::Evaluation evaluation;
-  return evaluation;
+inline app::EvaluationResults& shared_evaluation() {
+  static app::EvaluationResults results;
+  return results;
 }
 
 /// The same of its memory.
@@ -71,26 +73,36 @@ inline app::EvaluationWorkspace& shared_workspace() {
   return workspace;
 }
 
-inline void finish(app::Evaluation& evaluation) {
-  while (!evaluation.done()) {
-    evaluation.step(shared_workspace());
+/// A run on these results in that memory.
+inline app::Evaluation run_on(app::EvaluationResults& results) {
+  return {results, shared_workspace()};
+}
+
+inline void finish(app::EvaluationResults& results) {
+  app::Evaluation run = run_on(results);
+  while (!run.done()) {
+    run.step();
   }
 }
 
-inline app::Evaluation& evaluated(const app::Device& device, const app::Settings& settings) {
-  app::Evaluation& evaluation = shared_evaluation();
-  if (evaluation.start_from_model(device, settings, shared_workspace()) == Status::kOk) {
-    finish(evaluation);
+/// @param[in] store Lent for the trials.
+inline app::EvaluationResults& evaluated(const app::Device& device, const app::Settings& settings,
+                                         Span<double> store = {}) {
+  app::EvaluationResults& results = shared_evaluation();
+  if (run_on(results).start_from_model(device, settings) == Status::kOk) {
+    run_on(results).lend_trial_store(store);
+    finish(results);
   }
-  return evaluation;
+  return results;
 }
 
-inline app::Evaluation& evaluated(const FrequencyResponse& points, const app::Settings& settings) {
-  app::Evaluation& evaluation = shared_evaluation();
-  if (evaluation.start_from_points(points, settings, shared_workspace()) == Status::kOk) {
-    finish(evaluation);
+inline app::EvaluationResults& evaluated(const FrequencyResponse& points,
+                                         const app::Settings& settings) {
+  app::EvaluationResults& results = shared_evaluation();
+  if (run_on(results).start_from_points(points, settings) == Status::kOk) {
+    finish(results);
   }
-  return evaluation;
+  return results;
 }
 
 }  // namespace emax::test

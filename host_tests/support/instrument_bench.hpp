@@ -16,18 +16,9 @@
 #include "support/manual_watchdog.hpp"
 #include "support/memory_byte_stream.hpp"
 #include "support/memory_store.hpp"
+#include "support/quick_sweep.hpp"
 
 namespace emax::test {
-
-/// Five frequencies and short records: a sweep in tens of milliseconds.
-inline app::SweepSettings quick_sweep() {
-  app::SweepSettings settings = emax::app::default_sweep_settings();
-  settings.frequency_count = 5;
-  const double frequencies_hz[] = {200.0, 1000.0, 2500.0, 4000.0, 5500.0};
-  std::copy_n(frequencies_hz, 5, settings.frequency_hz.begin());
-  settings.repeats = 3;
-  return settings;
-}
 
 /// A new instrument, switched on, with a peer connected. One at a time.
 class InstrumentBench {

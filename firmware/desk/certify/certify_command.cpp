@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_workspace.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/base/decimal.hpp"
 #include "emax/bound/energy_certificate.hpp"
@@ -153,35 +154,35 @@ class CertificateFile final {
 };
 
 // Finds the device and the signal with the largest energy known.
-Problem find_energy(const ReportOptions& options, app::Evaluation& evaluation) {
+Problem find_energy(const ReportOptions& options, app::EvaluationResults& results) {
   static app::EvaluationWorkspace workspace;
+  app::Evaluation evaluation(results, workspace);
   Status status = Status::kOk;
   if (options.points_path.empty()) {
-    status = evaluation.start_from_model(options.device, options.settings, workspace,
-                                         app::Goal::kEnergy);
+    status = evaluation.start_from_model(options.device, options.settings, app::Goal::kEnergy);
   } else {
     static FrequencyResponse points;
     if (Problem problem =
             read_points(options.points_path, options.reference_uncertainty_percent, points)) {
       return problem;
     }
-    status = evaluation.start_from_points(points, options.settings, workspace, app::Goal::kEnergy);
+    status = evaluation.start_from_points(points, options.settings, app::Goal::kEnergy);
   }
   ConsoleProgress progress;
-  while (status == Status::kOk && !evaluation.done() && !evaluation.has_energy()) {
+  while (status == Status::kOk && !evaluation.done() && !results.has_energy) {
     if (stop_requested()) {
       return stopped();
     }
-    progress.show(name_of(evaluation.stage()), evaluation.progress());
-    evaluation.step(workspace);
-    status = evaluation.status();
+    progress.show(name_of(results.stage), evaluation.progress());
+    evaluation.step();
+    status = results.status();
   }
   if (status == Status::kOk) {
     return {};
   }
   StringSink sentence;
   app::TextWriter writer(sentence);
-  write_failure(evaluation, writer);
+  write_failure(results, writer);
   const bool is_search = status == Status::kTooManyCells || status == Status::kTooManySwitches;
   const std::string source =
       options.points_path.empty() ? "--model" : name_of_input(options.points_path);
@@ -357,24 +358,24 @@ Problem run_certify(Span<const std::string_view> arguments) {
   }
   // Only the estimate's energy is wanted.
   options.report.settings.trend_count = 0;
-  static app::Evaluation evaluation;
+  static app::EvaluationResults evaluation;
   CertificateFile file(options.out_path);
   Problem problem = find_energy(options.report, evaluation);
   if (problem || (problem = file.open())) {
     return problem;
   }
-  const ModalModel model = evaluation.model();
+  const ModalModel model = evaluation.model;
   Work work;
-  problem = work.start(model, evaluation.maximum().signal.duration_s(), options.effort_s);
+  problem = work.start(model, evaluation.maximum.signal.duration_s(), options.effort_s);
   if (problem ||
-      (problem = prove(work.certificate(), evaluation.maximum().energy, options.effort_s, start))) {
+      (problem = prove(work.certificate(), evaluation.maximum.energy, options.effort_s, start))) {
     return problem;
   }
   Result result;
   result.proven.model = &model;
   result.proven.certificate = &work.certificate();
-  result.proven.signal = &evaluation.maximum().signal;
-  result.proven.limit_mps2 = evaluation.limit_mps2();
+  result.proven.signal = &evaluation.maximum.signal;
+  result.proven.limit_mps2 = evaluation.limit_mps2;
   result.proven.energy_v2s = evaluation.energy_v2s();
   result.seconds = seconds_since(start);
   result.certificate_path = options.out_path;

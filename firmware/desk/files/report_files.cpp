@@ -17,7 +17,7 @@ namespace {
 // The tables; they need nothing but the evaluation.
 struct Table {
   const char* name;
-  void (*write)(const app::Evaluation& evaluation, app::TextWriter& out) noexcept;
+  void (*write)(const app::EvaluationResults& results, app::TextWriter& out) noexcept;
   bool needs_points;
 };
 
@@ -29,14 +29,14 @@ constexpr Table kTables[] = {
     {"histogram.csv", app::write_histogram_csv, false},
 };
 
-Problem add_tables(const app::Evaluation& evaluation, OutputFiles& files) {
+Problem add_tables(const app::EvaluationResults& results, OutputFiles& files) {
   for (const Table& table : kTables) {
-    if (table.needs_points && evaluation.source() != app::Source::kPoints) {
+    if (table.needs_points && results.source != app::Source::kPoints) {
       files.drop(table.name);
       continue;
     }
     Problem problem =
-        files.add(table.name, [&](app::TextWriter& out) { table.write(evaluation, out); });
+        files.add(table.name, [&](app::TextWriter& out) { table.write(results, out); });
     if (problem) {
       return problem;
     }
@@ -56,19 +56,18 @@ void drop_pictures(OutputFiles& files) {
 // The script of the pictures, and the pictures where gnuplot can draw them.
 //
 // @param[out] remark What stands in the way of the pictures.
-Problem add_pictures(const app::Evaluation& evaluation, const app::ReportContext& context,
+Problem add_pictures(const app::EvaluationResults& results, const app::ReportContext& context,
                      OutputFiles& files, std::vector<PagePicture>& shown, Problem& remark) {
   drop_pictures(files);
-  const std::vector<Picture> pictures = pictures_of(evaluation, context);
-  Problem problem = files.add(kPictureScript, [&](app::TextWriter& out) {
-    write_picture_script(pictures, evaluation, out);
-  });
+  const std::vector<Picture> pictures = pictures_of(results, context);
+  Problem problem = files.add(
+      kPictureScript, [&](app::TextWriter& out) { write_picture_script(pictures, results, out); });
   if (problem) {
     return problem;
   }
-  if (has_start_table(evaluation)) {
+  if (has_start_table(results)) {
     problem =
-        files.add(kStartTable, [&](app::TextWriter& out) { write_start_table(evaluation, out); });
+        files.add(kStartTable, [&](app::TextWriter& out) { write_start_table(results, out); });
     if (problem) {
       return problem;
     }
@@ -92,45 +91,45 @@ Problem add_pictures(const app::Evaluation& evaluation, const app::ReportContext
 
 }  // namespace
 
-Problem write_files(const app::Evaluation& evaluation, const app::ReportContext& context,
+Problem write_files(const app::EvaluationResults& results, const app::ReportContext& context,
                     OutputFiles& files, Problem& remark) {
-  Problem problem = files.add(
-      "report.txt", [&](app::TextWriter& out) { write_report(evaluation, context, out); });
+  Problem problem =
+      files.add("report.txt", [&](app::TextWriter& out) { write_report(results, context, out); });
   if (problem) {
     return problem;
   }
-  problem = files.add("results.json",
-                      [&](app::TextWriter& out) { write_json(evaluation, context, out); });
+  problem =
+      files.add("results.json", [&](app::TextWriter& out) { write_json(results, context, out); });
   if (problem) {
     return problem;
   }
-  problem = add_tables(evaluation, files);
+  problem = add_tables(results, files);
   if (problem) {
     return problem;
   }
   std::vector<PagePicture> pictures;
-  problem = add_pictures(evaluation, context, files, pictures, remark);
+  problem = add_pictures(results, context, files, pictures, remark);
   if (problem) {
     return problem;
   }
-  problem = files.add(
-      "report.html", [&](app::TextWriter& out) { write_page(evaluation, context, pictures, out); });
+  problem = files.add("report.html",
+                      [&](app::TextWriter& out) { write_page(results, context, pictures, out); });
   if (problem) {
     return problem;
   }
   return stop_requested() ? stopped() : files.commit();
 }
 
-Problem write_fault_files(const app::ReportContext& context, const app::Evaluation* refused,
+Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,
                           OutputFiles& files) {
   const auto text = [&](app::TextWriter& out) { write_measurement(context, refused, out); };
-  const auto results = [&](app::TextWriter& out) { write_measurement_json(context, refused, out); };
+  const auto json = [&](app::TextWriter& out) { write_measurement_json(context, refused, out); };
   const auto page = [&](app::TextWriter& out) { write_fault_page(context, refused, out); };
   const auto points = [&](app::TextWriter& out) {
     write_measured_points_csv(*context.measurement, out);
   };
   Problem problem = files.add("report.txt", text);
-  problem = problem ? problem : files.add("results.json", results);
+  problem = problem ? problem : files.add("results.json", json);
   problem = problem ? problem : files.add("report.html", page);
   problem = problem ? problem : files.add("frequency_response.csv", points);
   for (const Table& table : kTables) {

@@ -1,7 +1,7 @@
 // What `emax report --out` leaves in its directory.
 #pragma once
 
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/report_context.hpp"
 
 #include "desk/cli/problem.hpp"
@@ -11,16 +11,16 @@ namespace emax::desk {
 
 /// Writes report, results, tables, pictures and page, and puts them in place.
 ///
-/// @param[in]  evaluation With the stage kDone.
+/// @param[in]  results    With the stage kDone.
 /// @param[out] remark     Why there are no pictures, if there are none; all else is there then.
-Problem write_files(const app::Evaluation& evaluation, const app::ReportContext& context,
+Problem write_files(const app::EvaluationResults& results, const app::ReportContext& context,
                     OutputFiles& files, Problem& remark);
 
 /// Writes what there is of a measurement that led to no result, and puts it in place.
 ///
 /// @param[in] context With a measurement.
 /// @param[in] refused The evaluation that has refused the points; null if the sweep failed.
-Problem write_fault_files(const app::ReportContext& context, const app::Evaluation* refused,
+Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,
                           OutputFiles& files);
 
 }  // namespace emax::desk

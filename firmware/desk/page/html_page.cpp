@@ -16,7 +16,7 @@ namespace emax::desk {
 
 namespace {
 
-using app::Evaluation;
+using app::EvaluationResults;
 using app::TextWriter;
 
 constexpr double kMilli = 1e3;
@@ -208,18 +208,18 @@ void append_figure(std::string& html, const char* kind, const std::string& name,
   html += std::string("<div") + kind + "><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
 }
 
-void append_energies(std::string& html, const Evaluation& evaluation) {
-  const double energy = evaluation.energy_v2s();
-  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+void append_energies(std::string& html, const EvaluationResults& results) {
+  const double energy = results.energy_v2s();
+  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
   const std::string largest = is_ise ? "Largest energy of the error" : "Largest energy difference";
-  if (!evaluation.has_monte_carlo()) {
+  if (!results.has_monte_carlo) {
     const EnergyFormat format(energy, 0.0);
     append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
                   format.number(energy) + format.unit());
     append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }
-  const MonteCarloResult result = evaluation.monte_carlo().result();
+  const MonteCarloResult& result = results.trials.result;
   const EnergyFormat format(result.maximum, result.u);
   append_figure(html, " class=\"first\"",
                 largest + " within the device's uncertainty, E<sub>max</sub>",
@@ -233,31 +233,31 @@ void append_energies(std::string& html, const Evaluation& evaluation) {
                     format.number(result.symmetric.high) + format.unit());
 }
 
-void append_rms(std::string& html, const Evaluation& evaluation) {
-  if (evaluation.energy_v2s() < 0.0) {
+void append_rms(std::string& html, const EvaluationResults& results) {
+  if (results.energy_v2s() < 0.0) {
     return;
   }
-  const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
-  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  const double full = results.device.estimate.sensitivity * results.limit_mps2;
+  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
   const char* name = is_ise ? "rms error at the estimates" : "√(E/T) at the estimates";
   append_figure(html, "", name, words_of([&](TextWriter& out) {
-                  out.general(evaluation.rms_error_v(), 5).text(" V = ");
-                  out.general(kPercent * evaluation.rms_error_v() / full, 4).text(" % of S a");
+                  out.general(results.rms_error_v(), 5).text(" V = ");
+                  out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S a");
                 }));
 }
 
-void append_bound(std::string& html, const Evaluation& evaluation) {
-  if (evaluation.has_bound()) {
-    const EnergyFormat format(evaluation.bound_v2s(), 0.0);
-    append_figure(html, "", "Proven at the estimates: no signal has more than",
-                  format.number(rounded_up(evaluation.bound_v2s(), EnergyFormat::kDecimalsAlone)) +
-                      format.unit());
+void append_bound(std::string& html, const EvaluationResults& results) {
+  if (results.has_bound) {
+    const EnergyFormat format(results.bound_v2s, 0.0);
+    append_figure(
+        html, "", "Proven at the estimates: no signal has more than",
+        format.number(rounded_up(results.bound_v2s, EnergyFormat::kDecimalsAlone)) + format.unit());
   }
 }
 
-void append_conditions(std::string& html, const Evaluation& evaluation, bool in_g) {
-  const app::Settings& settings = evaluation.settings();
-  const double limit = evaluation.limit_mps2();
+void append_conditions(std::string& html, const EvaluationResults& results, bool in_g) {
+  const app::Settings& settings = results.settings;
+  const double limit = results.limit_mps2;
   html +=
       "<p>" + words_of([&](TextWriter& out) {
         out.text("For signals within +-a, a = ").general(limit, 7).text(" m/s^2");
@@ -314,22 +314,22 @@ void write_html(TextWriter& out, const std::string& html) {
 
 }  // namespace
 
-void write_page(const Evaluation& evaluation, const app::ReportContext& context,
+void write_page(const EvaluationResults& results, const app::ReportContext& context,
                 const std::vector<PagePicture>& pictures, TextWriter& out) {
   std::string body;
   HtmlWords words(body);
   TextWriter report(words);
   Pictures section_end(pictures);
   HtmlMarkup markup(body, section_end);
-  write_report(evaluation, context, report, &markup);
+  write_report(results, context, report, &markup);
   markup.finish();
 
   std::string html = opening(context.labels) + "<dl class=\"headline\">\n";
-  append_energies(html, evaluation);
-  append_rms(html, evaluation);
-  append_bound(html, evaluation);
+  append_energies(html, results);
+  append_rms(html, results);
+  append_bound(html, results);
   html += "</dl>\n";
-  append_conditions(html, evaluation, context.in_g);
+  append_conditions(html, results, context.in_g);
   append_warnings(html, markup);
   if (pictures.empty()) {
     html += std::string("<p class=\"note\">No pictures: gnuplot was missing when this page was ") +
@@ -339,7 +339,7 @@ void write_page(const Evaluation& evaluation, const app::ReportContext& context,
   write_html(out, html + body + closing());
 }
 
-void write_fault_page(const app::ReportContext& context, const Evaluation* refused,
+void write_fault_page(const app::ReportContext& context, const EvaluationResults* refused,
                       TextWriter& out) {
   std::string html = opening(context.labels);
   HtmlWords words(html);

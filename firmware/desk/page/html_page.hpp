@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emax/app/base/text_writer.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/report_context.hpp"
 
 #include "desk/pictures/pictures.hpp"
@@ -20,13 +20,13 @@ struct PagePicture {
 
 /// Writes a page in UTF-8 that needs nothing from outside itself and no scripts.
 ///
-/// @param[in] evaluation With the stage kDone.
+/// @param[in] results    With the stage kDone.
 /// @param[in] pictures   Empty if there are none; the page says so then.
-void write_page(const app::Evaluation& evaluation, const app::ReportContext& context,
+void write_page(const app::EvaluationResults& results, const app::ReportContext& context,
                 const std::vector<PagePicture>& pictures, app::TextWriter& out);
 
 /// The same for a measurement that led to no result; `context` has the measurement.
-void write_fault_page(const app::ReportContext& context, const app::Evaluation* refused,
+void write_fault_page(const app::ReportContext& context, const app::EvaluationResults* refused,
                       app::TextWriter& out);
 
 }  // namespace emax::desk

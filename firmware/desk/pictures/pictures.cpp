@@ -16,7 +16,7 @@ namespace emax::desk {
 
 namespace {
 
-using app::Evaluation;
+using app::EvaluationResults;
 using app::TextWriter;
 
 constexpr std::uint32_t kNameShown = 36;
@@ -39,16 +39,16 @@ std::string words_of(const Write& write) {
 
 // Titles
 
-std::string parameters_of(const Evaluation& evaluation) {
-  const Accelerometer& device = evaluation.device().estimate;
+std::string parameters_of(const EvaluationResults& results) {
+  const Accelerometer& device = results.device.estimate;
   return words_of([&](TextWriter& out) {
     out.text("S = ").general(device.sensitivity, 5).text(" V/(m/s²), f0 = ");
     out.general(device.natural_frequency_hz, 6).text(" Hz, β = ").general(device.damping, 5);
   });
 }
 
-std::string filter_of(const Evaluation& evaluation) {
-  const Butterworth& filter = evaluation.model().filter();
+std::string filter_of(const EvaluationResults& results) {
+  const Butterworth& filter = results.model.filter();
   return words_of([&](TextWriter& out) {
     out.text("reference filter: Butterworth, order ");
     out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
@@ -57,16 +57,16 @@ std::string filter_of(const Evaluation& evaluation) {
   });
 }
 
-std::string conditions_of(const Evaluation& evaluation, bool with_time, bool in_g) {
-  const app::Settings& settings = evaluation.settings();
+std::string conditions_of(const EvaluationResults& results, bool with_time, bool in_g) {
+  const app::Settings& settings = results.settings;
   const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   return words_of([&](TextWriter& out) {
     if (with_time) {
       out.text("T = ").general(kMilli * settings.duration_s, 6).text(" ms, ");
     }
-    out.text("a = ").general(evaluation.limit_mps2(), 5).text(" m/s²");
+    out.text("a = ").general(results.limit_mps2, 5).text(" m/s²");
     if (in_g) {
-      out.text(" (").general(evaluation.limit_mps2() / app::kStandardGravity_mps2, 5).text(" g)");
+      out.text(" (").general(results.limit_mps2 / app::kStandardGravity_mps2, 5).text(" g)");
     }
     out.text(", filter of order ");
     out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(", ");
@@ -76,32 +76,32 @@ std::string conditions_of(const Evaluation& evaluation, bool with_time, bool in_
   });
 }
 
-std::string fit_quality_of(const Evaluation& evaluation) {
-  const WlspFit& fit = evaluation.fit().result();
+std::string fit_quality_of(const EvaluationResults& results) {
+  const WlspFit& fit = results.fit.result();
   return words_of([&](TextWriter& out) {
     out.text("bars: expanded uncertainty (k = 2); χ²/dof = ").general(fit.chi2 / fit.dof, 4);
     out.text(", Birge ratio ").general(fit.birge_ratio, 3);
   });
 }
 
-std::string energy_of(const Evaluation& evaluation) {
-  const double energy = evaluation.energy_v2s();
+std::string energy_of(const EvaluationResults& results) {
+  const double energy = results.energy_v2s();
   return words_of([&](TextWriter& out) {
     out.text("E = ").scientific(energy, 4).text(" V² s");
     if (energy >= 0.0) {
-      const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
-      const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+      const double full = results.device.estimate.sensitivity * results.limit_mps2;
+      const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
       out.text(is_ise ? ", rms error " : ", √(E/T) = ")
-          .general(evaluation.rms_error_v(), 4)
+          .general(results.rms_error_v(), 4)
           .text(" V = ");
-      out.general(kPercent * evaluation.rms_error_v() / full, 4).text(" % of S·a");
+      out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S·a");
     }
   });
 }
 
-std::string trials_of(const Evaluation& evaluation) {
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  const bool is_box = evaluation.settings().distribution == Distribution::kBox;
+std::string trials_of(const EvaluationResults& results) {
+  const MonteCarloResult& result = results.trials.result;
+  const bool is_box = results.settings.distribution == Distribution::kBox;
   return words_of([&](TextWriter& out) {
     out.integer(result.trials).text(" trials, S, f0 and β ");
     out.text(is_box ? "uniform within ±u" : "jointly normal").text("; u(E) = ");
@@ -109,8 +109,8 @@ std::string trials_of(const Evaluation& evaluation) {
   });
 }
 
-std::string line_of(const Evaluation& evaluation) {
-  const Trend& trend = evaluation.trend();
+std::string line_of(const EvaluationResults& results) {
+  const Trend& trend = results.trend;
   return words_of([&](TextWriter& out) {
     out.text("line: E = ").general(trend.slope, 5).text(" V² · T ");
     out.text(trend.intercept < 0.0 ? "− " : "+ ").general(std::abs(trend.intercept), 4);
@@ -168,7 +168,9 @@ Scale time_scale(double end_s) {
   return scale.factor < 1.0 ? Scale{1.0, "s"} : scale;
 }
 
-Scale energy_scale(const Evaluation& evaluation) { return scaled(evaluation.energy_v2s(), "V² s"); }
+Scale energy_scale(const EvaluationResults& results) {
+  return scaled(results.energy_v2s(), "V² s");
+}
 
 // As many decimals as tell the marks of an axis of that length apart.
 int decimals_of_axis(double length) {
@@ -213,11 +215,11 @@ struct ResponseRange {
   double phase_deviation_rad = 0.0;
 };
 
-ResponseRange range_of(const Evaluation& evaluation) {
+ResponseRange range_of(const EvaluationResults& results) {
   constexpr double kCoverageFactor = 2.0;
-  const Accelerometer& device = evaluation.device().estimate;
-  const Span<const double> common = evaluation.fit().response().common();
-  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  const Accelerometer& device = results.device.estimate;
+  const Span<const double> common = results.fit.response().common();
+  const Span<const ResponsePoint> points = results.fit.response().points();
   ResponseRange range;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ResponsePoint& point = points[i];
@@ -243,9 +245,9 @@ bool spans_much(const ResponseRange& range) {
 }
 
 // A logarithmic axis, with marks at 1, 2 and 5 where there are not two decades of them.
-void write_frequency_axis(const Evaluation& evaluation, TextWriter& out) {
+void write_frequency_axis(const EvaluationResults& results, TextWriter& out) {
   constexpr double kMargin = 1.15;
-  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  const Span<const ResponsePoint> points = results.fit.response().points();
   const double first = points[0].frequency_hz;
   const double last = points[points.size() - 1].frequency_hz;
   out.text("set logscale x\nset xrange [").general(first / kMargin, 4).text(":");
@@ -264,11 +266,11 @@ void write_frequency_axis(const Evaluation& evaluation, TextWriter& out) {
   }
 }
 
-void write_frequency_response(const Picture& picture, const Evaluation& evaluation,
+void write_frequency_response(const Picture& picture, const EvaluationResults& results,
                               TextWriter& out) {
-  const Accelerometer& device = evaluation.device().estimate;
+  const Accelerometer& device = results.device.estimate;
   constexpr double kPlain = 0.01;
-  const ResponseRange range = range_of(evaluation);
+  const ResponseRange range = range_of(results);
   const bool is_logarithmic = spans_much(range);
   const Scale response =
       is_logarithmic ? Scale{1.0, "V/(m/s²)"} : scaled(range.largest_amplitude, "V/(m/s²)", kPlain);
@@ -283,9 +285,9 @@ void write_frequency_response(const Picture& picture, const Evaluation& evaluati
   out.text("set multiplot layout 2,2 columnsfirst margins 0.1,0.98,0.15,0.84 spacing 0.12,0.05 ")
       .text("title ");
   const std::string title =
-      title_lines(picture.title, parameters_of(evaluation), fit_quality_of(evaluation));
+      title_lines(picture.title, parameters_of(results), fit_quality_of(results));
   out.text(title.c_str()).line();
-  write_frequency_axis(evaluation, out);
+  write_frequency_axis(results, out);
   write_value(out, "As", response.factor);
   write_value(out, "percent", kPercent * percent.factor);
   write_value(out, "degrees", degrees.factor);
@@ -322,39 +324,37 @@ void write_frequency_response(const Picture& picture, const Evaluation& evaluati
 
 // Impulse response
 
-double end_of_table_s(const Evaluation& evaluation) {
-  return std::max(evaluation.settling_time().time_s, evaluation.settings().duration_s);
+double end_of_table_s(const EvaluationResults& results) {
+  return std::max(results.settling_time.time_s, results.settings.duration_s);
 }
 
-double fastest_hz(const Evaluation& evaluation) {
-  return std::max(evaluation.device().estimate.natural_frequency_hz,
-                  evaluation.model().filter().cutoff_hz);
+double fastest_hz(const EvaluationResults& results) {
+  return std::max(results.device.estimate.natural_frequency_hz, results.model.filter().cutoff_hz);
 }
 
 // Of the time after the device has settled only a part is shown.
-double shown_s(const Evaluation& evaluation) {
+double shown_s(const EvaluationResults& results) {
   constexpr double kBeyondSettling = 1.5;
-  const SettlingTime settling = evaluation.settling_time();
-  const double end_s = end_of_table_s(evaluation);
+  const SettlingTime& settling = results.settling_time;
+  const double end_s = end_of_table_s(results);
   return settling.found ? std::min(end_s, kBeyondSettling * settling.time_s) : end_s;
 }
 
-double end_of_picture_s(const Evaluation& evaluation) {
-  const double end_s = shown_s(evaluation);
-  return has_start_table(evaluation) ? std::min(end_s, kPeriodsShown / fastest_hz(evaluation))
-                                     : end_s;
+double end_of_picture_s(const EvaluationResults& results) {
+  const double end_s = shown_s(results);
+  return has_start_table(results) ? std::min(end_s, kPeriodsShown / fastest_hz(results)) : end_s;
 }
 
-void write_impulse_response(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
-  const double end_s = end_of_picture_s(evaluation);
+void write_impulse_response(const Picture& picture, const EvaluationResults& results,
+                            TextWriter& out) {
+  const double end_s = end_of_picture_s(results);
   const Scale time = time_scale(end_s);
-  const Scale response = scaled(evaluation.peak().value, "V/(m/s)");
-  const SettlingTime settling = evaluation.settling_time();
+  const Scale response = scaled(results.peak.value, "V/(m/s)");
+  const SettlingTime& settling = results.settling_time;
   const std::string table =
-      gnuplot_string(has_start_table(evaluation) ? kStartTable : "impulse_response.csv");
+      gnuplot_string(has_start_table(results) ? kStartTable : "impulse_response.csv");
   write_start(out, picture, 500);
-  const std::string title =
-      title_lines(picture.title, parameters_of(evaluation), filter_of(evaluation));
+  const std::string title = title_lines(picture.title, parameters_of(results), filter_of(results));
   out.text("set title ").text(title.c_str()).line();
   write_axis(out, "x", "time", time.unit);
   write_axis(out, "y", "response", response.unit);
@@ -378,18 +378,17 @@ void write_impulse_response(const Picture& picture, const Evaluation& evaluation
 
 // Signal
 
-void write_signal(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
-  const double end_s = evaluation.settings().duration_s;
-  const double limit = evaluation.limit_mps2();
+void write_signal(const Picture& picture, const EvaluationResults& results, TextWriter& out) {
+  const double end_s = results.settings.duration_s;
+  const double limit = results.limit_mps2;
   const Scale time = time_scale(end_s);
-  const double full_v = evaluation.device().estimate.sensitivity * limit;
-  const Scale error =
-      prefixed(evaluation.has_absolute_error() ? evaluation.absolute_error_v() : full_v, "V");
+  const double full_v = results.device.estimate.sensitivity * limit;
+  const Scale error = prefixed(results.has_absolute_error ? results.absolute_error_v : full_v, "V");
   const Scale acceleration = scaled(limit, "m/s²");
   const double shown_limit = acceleration.factor * limit;
   write_start(out, picture, 560);
-  const std::string title = title_lines(picture.title, energy_of(evaluation),
-                                        conditions_of(evaluation, true, picture.in_g));
+  const std::string title =
+      title_lines(picture.title, energy_of(results), conditions_of(results, true, picture.in_g));
   out.text("set multiplot title ").text(title.c_str()).line();
   write_value(out, "ts", time.factor);
   write_value(out, "ys", error.factor);
@@ -420,15 +419,15 @@ struct EnergyAxis {
   double high;
 };
 
-EnergyAxis histogram_axis(const Evaluation& evaluation) {
+EnergyAxis histogram_axis(const EvaluationResults& results) {
   constexpr double kMargin = 0.04;
   constexpr int kMostDecimals = 5;
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  const double energy = evaluation.energy_v2s();
+  const MonteCarloResult& result = results.trials.result;
+  const double energy = results.energy_v2s();
   const double least = std::min(result.minimum, energy);
   const double most = std::max(result.maximum, energy);
   const double margin = kMargin * (most - least);
-  Scale scale = energy_scale(evaluation);
+  Scale scale = energy_scale(results);
   double origin = 0.0;
   if (decimals_of_axis(scale.factor * (most - least)) > kMostDecimals) {
     origin = energy;
@@ -443,18 +442,18 @@ void write_mark(TextWriter& out, const char* position, const char* style) {
   out.text(style).line();
 }
 
-void write_histogram(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  const EnergyAxis axis = histogram_axis(evaluation);
+void write_histogram(const Picture& picture, const EvaluationResults& results, TextWriter& out) {
+  const MonteCarloResult& result = results.trials.result;
+  const EnergyAxis axis = histogram_axis(results);
   write_start(out, picture, 480);
-  const std::string title = title_lines(picture.title, trials_of(evaluation),
-                                        conditions_of(evaluation, true, picture.in_g));
+  const std::string title =
+      title_lines(picture.title, trials_of(results), conditions_of(results, true, picture.in_g));
   out.text("set title ").text(title.c_str()).line();
   write_value(out, "Es", axis.scale.factor);
   write_value(out, "origin", axis.origin);
   write_value(out, "low", axis.scale.factor * (result.symmetric.low - axis.origin));
   write_value(out, "high", axis.scale.factor * (result.symmetric.high - axis.origin));
-  write_value(out, "E", axis.scale.factor * (evaluation.energy_v2s() - axis.origin));
+  write_value(out, "E", axis.scale.factor * (results.energy_v2s() - axis.origin));
   out.text("middle(a, b) = ((a + b)/2 - origin)*Es\n");
   out.text("inside(a, b) = middle(a, b) > low && middle(a, b) < high\n");
   write_axis(out, "x", axis.origin == 0.0 ? "E" : "E minus E at the estimates", axis.scale.unit);
@@ -476,16 +475,15 @@ void write_histogram(const Picture& picture, const Evaluation& evaluation, TextW
 
 // Trend
 
-void write_trend(const Picture& picture, const Evaluation& evaluation, TextWriter& out) {
-  const Span<const app::TrendPoint> points = evaluation.trend_points();
-  const double duration_s = evaluation.settings().duration_s;
+void write_trend(const Picture& picture, const EvaluationResults& results, TextWriter& out) {
+  const Span<const app::TrendPoint> points = results.trend_points();
+  const double duration_s = results.settings.duration_s;
   const double last_s = std::max(points[points.size() - 1].duration_s, duration_s);
-  const double limit = evaluation.limit_mps2();
   const Scale time = time_scale(last_s);
-  const Scale energy = scaled(limit * limit * points[points.size() - 1].energy, "V² s");
+  const Scale energy = scaled(points[points.size() - 1].energy_v2s, "V² s");
   write_start(out, picture, 480);
-  const std::string title = title_lines(picture.title, line_of(evaluation),
-                                        conditions_of(evaluation, false, picture.in_g));
+  const std::string title =
+      title_lines(picture.title, line_of(results), conditions_of(results, false, picture.in_g));
   out.text("set title ").text(title.c_str()).line();
   write_value(out, "ts", time.factor);
   write_value(out, "Es", energy.factor);
@@ -494,19 +492,19 @@ void write_trend(const Picture& picture, const Evaluation& evaluation, TextWrite
   out.text("set xrange [0:").exact(1.05 * time.factor * last_s).text("]\n");
   out.text("set yrange [*<0:0<*]\nset offsets 0, 0, graph 0.1, 0\n");
   // Where the line does not go.
-  out.text(evaluation.trend().slope < 0.0 ? "set key top right" : "set key top left");
+  out.text(results.trend.slope < 0.0 ? "set key top right" : "set key top left");
   out.text(" Left reverse\n");
   // Of the report's own T, which need not be among those of the trend.
-  out.text("$report << END\n").exact(duration_s).text(",").exact(evaluation.energy_v2s());
+  out.text("$report << END\n").exact(duration_s).text(",").exact(results.energy_v2s());
   out.text(",");
-  if (evaluation.has_bound()) {
-    out.exact(evaluation.bound_v2s());
+  if (results.has_bound) {
+    out.exact(results.bound_v2s);
   }
   out.text("\nEND\n");
   out.text("plot 'trend.csv' skip 1 using ($1*ts):($3*Es) with lines ls 2 ");
   out.text("title 'straight line', \\\n");
   out.text("  $report using ($1*ts):($2*Es) with points ls 6 notitle, \\\n");
-  if (evaluation.has_bound()) {
+  if (results.has_bound) {
     out.text("  $report using ($1*ts):($3*Es) with points ls 5 ");
     out.text("title 'proven: no signal has more', \\\n");
   }
@@ -521,22 +519,19 @@ struct Kind {
   app::ReportSection section;
   const char* title;
   const char* caption;
-  bool (*exists)(const Evaluation& evaluation);
-  void (*write)(const Picture& picture, const Evaluation& evaluation, TextWriter& out);
+  bool (*exists)(const EvaluationResults& results);
+  void (*write)(const Picture& picture, const EvaluationResults& results, TextWriter& out);
 };
 
-bool always(const Evaluation& /*evaluation*/) { return true; }
+bool always(const EvaluationResults& /*results*/) { return true; }
 
-bool has_points(const Evaluation& evaluation) {
-  return evaluation.source() == app::Source::kPoints;
+bool has_points(const EvaluationResults& results) { return results.source == app::Source::kPoints; }
+
+bool has_histogram(const EvaluationResults& results) {
+  return results.has_monte_carlo && results.trials.result.maximum > results.trials.result.minimum;
 }
 
-bool has_histogram(const Evaluation& evaluation) {
-  return evaluation.has_monte_carlo() &&
-         evaluation.monte_carlo().result().maximum > evaluation.monte_carlo().result().minimum;
-}
-
-bool has_trend(const Evaluation& evaluation) { return !evaluation.trend_points().empty(); }
+bool has_trend(const EvaluationResults& results) { return !results.trend_points().empty(); }
 
 constexpr Kind kKinds[] = {
     {kPictureFiles[0], app::ReportSection::kFit, "frequency response",
@@ -570,11 +565,12 @@ std::string name_of_device(const app::Labels& labels) {
 
 }  // namespace
 
-std::vector<Picture> pictures_of(const Evaluation& evaluation, const app::ReportContext& context) {
+std::vector<Picture> pictures_of(const EvaluationResults& results,
+                                 const app::ReportContext& context) {
   std::vector<Picture> pictures;
   const std::string name = name_of_device(context.labels);
   for (const Kind& kind : kKinds) {
-    if (kind.exists(evaluation)) {
+    if (kind.exists(results)) {
       pictures.push_back(
           {kind.file, kind.section, name + ": " + kind.title, kind.caption, context.in_g});
     }
@@ -582,7 +578,7 @@ std::vector<Picture> pictures_of(const Evaluation& evaluation, const app::Report
   return pictures;
 }
 
-void write_picture_script(const std::vector<Picture>& pictures, const Evaluation& evaluation,
+void write_picture_script(const std::vector<Picture>& pictures, const EvaluationResults& results,
                           TextWriter& out) {
   out.text("# Draws the pictures of a report from the tables beside it: gnuplot ");
   out.text(kPictureScript).line();
@@ -590,23 +586,23 @@ void write_picture_script(const std::vector<Picture>& pictures, const Evaluation
   for (const Picture& picture : pictures) {
     for (const Kind& kind : kKinds) {
       if (std::string_view(kind.file) == picture.file) {
-        kind.write(picture, evaluation, out);
+        kind.write(picture, results, out);
       }
     }
   }
   out.text("\nunset output\n");
 }
 
-bool has_start_table(const Evaluation& evaluation) {
-  const double row_s = end_of_table_s(evaluation) / static_cast<double>(app::kResponseRows - 1);
-  return row_s * fastest_hz(evaluation) * kLeastRowsPerPeriod > 1.0 ||
-         row_s * kLeastRows > shown_s(evaluation);
+bool has_start_table(const EvaluationResults& results) {
+  const double row_s = end_of_table_s(results) / static_cast<double>(app::kResponseRows - 1);
+  return row_s * fastest_hz(results) * kLeastRowsPerPeriod > 1.0 ||
+         row_s * kLeastRows > shown_s(results);
 }
 
-void write_start_table(const Evaluation& evaluation, TextWriter& out) {
+void write_start_table(const EvaluationResults& results, TextWriter& out) {
   out.text("t_s,k,ka,kf\n");
-  const ModalModel& model = evaluation.model();
-  const double end_s = end_of_picture_s(evaluation);
+  const ModalModel& model = results.model;
+  const double end_s = end_of_picture_s(results);
   for (std::size_t row = 0; row < app::kResponseRows; ++row) {
     const double time_s =
         end_s * (static_cast<double>(row) / static_cast<double>(app::kResponseRows - 1));

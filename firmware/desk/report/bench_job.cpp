@@ -1,4 +1,4 @@
-// The measurement of `emax report`.
+// Runs the work of `emax report`, and says how its sweep has ended.
 #include "desk/report/bench_job.hpp"
 
 #include <cstddef>
@@ -23,13 +23,13 @@ std::string in_hz(double frequency_hz) {
   return sink.text();
 }
 
-std::string stage_of(const app::Sweep& sweep) {
-  switch (sweep.stage()) {
+std::string stage_of(const app::SweepResults& sweep) {
+  switch (sweep.stage) {
     case app::SweepStage::kCheckBefore:
     case app::SweepStage::kCheckAfter:
-      return "sweep, check at " + in_hz(sweep.settings().check_hz) + ",";
+      return "sweep, check at " + in_hz(sweep.settings.check_hz) + ",";
     case app::SweepStage::kPoints:
-      return "sweep, " + in_hz(sweep.settings().frequency_hz[sweep.points().size()]) + ",";
+      return "sweep, " + in_hz(sweep.settings.frequency_hz[sweep.points().size()]) + ",";
     case app::SweepStage::kIdle:
     case app::SweepStage::kSilence:
     case app::SweepStage::kDone:
@@ -48,46 +48,59 @@ std::string in_line(std::string sentence) {
 
 }  // namespace
 
-Problem BenchJob::run(const ReportOptions& options, ConsoleProgress& progress) {
+Problem BenchJob::start(const ReportOptions& options) {
   simulated_ = {options.bench.seed,
                 {options.bench.device.sensitivity, options.bench.device.natural_frequency_hz,
                  options.bench.device.damping}};
   Status status = bench_.configure(options.bench);
   if (status == Status::kOk) {
-    status = sweep_.start(options.sweep, bench_, work_);
+    status =
+        sequencer_.measure_and_evaluate(bench_, options.sweep, options.settings, app::Goal::kReport)
+            .status;
   }
-  if (status != Status::kOk) {
-    return fault("the bench does not start: " + in_line(explain(status)));
-  }
-  while (!sweep_.done()) {
-    if (stop_requested()) {
-      sweep_.stop(bench_, work_);
-      break;
-    }
-    progress.show(stage_of(sweep_).c_str(), sweep_.progress());
-    for (int i = 0; i < kBlocksPerLook && !sweep_.done(); ++i) {
-      sweep_.step(bench_, work_);
-    }
-  }
-  return describe_end();
+  return status == Status::kOk ? Problem{}
+                               : fault("the bench does not start: " + in_line(explain(status)));
 }
 
-Problem BenchJob::describe_end() const {
-  const Status status = sweep_.status();
-  if (status == Status::kOk) {
+Problem BenchJob::run(ConsoleProgress& progress) {
+  while (sequencer_.is_working()) {
+    if (stop_requested()) {
+      return stop();
+    }
+    const bool is_sweep = sequencer_.job() == app::Job::kSweep;
+    progress.show(is_sweep ? stage_of(sequencer_.sweep()).c_str() : sequencer_.stage_name(),
+                  sequencer_.progress());
+    sequencer_.step();
+    for (int i = 1; i < kBlocksPerLook && sequencer_.job() == app::Job::kSweep; ++i) {
+      sequencer_.step();
+    }
+  }
+  return has_measured() ? describe_sweep() : Problem{};
+}
+
+Problem BenchJob::stop() {
+  const bool was_sweep = sequencer_.job() == app::Job::kSweep;
+  sequencer_.abort();
+  return was_sweep ? describe_sweep() : stopped();
+}
+
+Problem BenchJob::describe_sweep() const {
+  const app::SweepResults& sweep = sequencer_.sweep();
+  if (sweep.status == Status::kOk) {
     return {};
   }
   const bool is_at_zero = bench_.drive_is_at_zero();
   const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
-  if (status == Status::kStopped && is_at_zero) {
+  if (sweep.status == Status::kStopped && is_at_zero) {
     return {ExitStatus::kStopped, "stopped during the sweep, " + drive};
   }
-  const std::string where = sweep_.failed_frequency_hz() > 0.0
-                                ? "at " + in_hz(sweep_.failed_frequency_hz())
+  const std::string where = sweep.failed_frequency_hz > 0.0
+                                ? "at " + in_hz(sweep.failed_frequency_hz)
                                 : "before the first frequency";
-  return fault(std::string(app::name_of_fault(status)) + " " + where + ": " +
-               in_line(explain(status)) + " (" + std::to_string(sweep_.points().size()) + " of " +
-               std::to_string(sweep_.settings().frequency_count) + " points kept, " + drive + ")");
+  return fault(std::string(app::name_of_fault(sweep.status)) + " " + where + ": " +
+               in_line(explain(sweep.status)) + " (" + std::to_string(sweep.points().size()) +
+               " of " + std::to_string(sweep.settings.frequency_count) + " points kept, " + drive +
+               ")");
 }
 
 }  // namespace emax::desk

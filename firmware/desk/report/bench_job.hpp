@@ -1,8 +1,8 @@
-// The measurement of `emax report`: a sweep on the simulated bench.
+// The work of `emax report`: a sequencer and the simulated bench that it measures on.
 #pragma once
 
-#include "emax/app/measure/sweep.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "desk/cli/console_progress.hpp"
@@ -11,30 +11,39 @@
 
 namespace emax::desk {
 
-/// A bench with its sweep; 22 KiB.
+/// A bench with the sequencer that drives it.
 class BenchJob final {
  public:
   BenchJob() = default;
   BenchJob(const BenchJob&) = delete;
   BenchJob& operator=(const BenchJob&) = delete;
 
-  /// Builds the bench and measures. However it ends, the drive is at zero.
+  /// Builds the bench and begins to measure on it, for a report.
   ///
-  /// @returns The fault with its frequency and what to check, or that it was stopped, if so.
-  Problem run(const ReportOptions& options, ConsoleProgress& progress);
+  /// @returns Why it does not start, if so.
+  Problem start(const ReportOptions& options);
 
-  const app::Sweep& sweep() const noexcept { return sweep_; }
+  /// Works until nothing is left to do, or until it is asked to stop. However it ends, the drive is
+  /// at zero.
+  ///
+  /// @returns The fault of the sweep with its frequency and what to check, or that it was stopped,
+  /// if so. Failures of the evaluation are left to the caller.
+  Problem run(ConsoleProgress& progress);
+
+  app::Sequencer& sequencer() noexcept { return sequencer_; }
   /// @returns Whether the sweep began at all.
-  bool has_measured() const noexcept { return sweep_.stage() != app::SweepStage::kIdle; }
+  bool has_measured() const noexcept { return sequencer_.sweep().stage != app::SweepStage::kIdle; }
   /// Refers to this object.
-  app::Measurement measurement() const noexcept { return {sweep_, bench_.format(), &simulated_}; }
+  app::Measurement measurement() const noexcept {
+    return {sequencer_.sweep(), bench_.format(), &simulated_};
+  }
 
  private:
-  Problem describe_end() const;
+  Problem stop();
+  Problem describe_sweep() const;
 
   sim::SimBench bench_;
-  app::Sweep sweep_;
-  app::SweepWorkspace work_;
+  app::Sequencer sequencer_;
   app::SimulatedBench simulated_;
 };
 

@@ -9,15 +9,15 @@
 #include <new>
 #include <string>
 
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
 #include "emax/identify/frequency_response.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/console_progress.hpp"
 #include "desk/cli/options.hpp"
-#include "desk/cli/stop_request.hpp"
 #include "desk/files/output_files.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/report_files.hpp"
@@ -63,8 +63,8 @@ std::string culprit(const app::Failure& failure, const ReportOptions& options) {
   return options.points_path.empty() ? "--model" : name_of_input(options.points_path);
 }
 
-Problem describe(const app::Evaluation& evaluation, const ReportOptions& options) {
-  const app::Failure& failure = evaluation.failure();
+Problem describe(const app::EvaluationResults& evaluation, const ReportOptions& options) {
+  const app::Failure& failure = evaluation.failure;
   const bool is_inverted = failure.status == Status::kInvertedPolarity;
   StringSink sentence;
   app::TextWriter writer(sentence);
@@ -78,58 +78,51 @@ Problem describe(const app::Evaluation& evaluation, const ReportOptions& options
 
 // What a report is written from.
 struct Results {
-  const app::Evaluation& evaluation;
+  const app::EvaluationResults& evaluation;
   const app::ReportContext& context;
 };
 
-Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evaluation& evaluation,
-              app::EvaluationWorkspace& workspace) {
-  if (!options.model_text.empty()) {
-    const Status status = evaluation.start_from_model(options.device, options.settings, workspace);
-    return status == Status::kOk ? Problem{} : describe(evaluation, options);
-  }
-  static FrequencyResponse points;
+// Begins with what there is to begin with: a bench, a device or points.
+Problem start(const ReportOptions& options, BenchJob& job) {
   if (options.measures()) {
-    (void)sweep.copy_to(points);  // A sweep that is done has points that a table takes.
-  } else if (Problem problem =
-                 read_points(options.points_path, options.reference_uncertainty_percent, points)) {
-    return problem;
+    return job.start(options);
   }
-  const Status status = evaluation.start_from_points(points, options.settings, workspace);
-  return status == Status::kOk ? Problem{} : describe(evaluation, options);
+  app::Sequencer& sequencer = job.sequencer();
+  if (!options.model_text.empty()) {
+    sequencer.take(options.device);
+  } else {
+    static FrequencyResponse points;
+    if (Problem problem =
+            read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+      return problem;
+    }
+    sequencer.take(points);
+  }
+  return sequencer.evaluate(options.settings, app::Goal::kReport)
+             ? describe(sequencer.evaluation(), options)
+             : Problem{};
 }
 
-// Runs an evaluation that has been started, with room for the trials' values, so that each is
+// Everything from the measurement to the results, with room for the trials' values, so that each is
 // computed once.
-Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evaluation& evaluation,
-            app::EvaluationWorkspace& workspace) {
+Problem work(const ReportOptions& options, BenchJob& job) {
   const std::uint32_t trials =
       options.settings.adaptive ? kMaxStoredTrials : options.settings.trials;
   const std::size_t room = std::min(trials, kMaxStoredTrials);
   const std::unique_ptr<double[]> store(new (std::nothrow) double[room]);
+  app::Sequencer& sequencer = job.sequencer();
   if (store != nullptr) {
-    evaluation.lend_trial_store(Span<double>(store.get(), room));
+    sequencer.lend_trial_store(Span<double>(store.get(), room));
   }
-  while (!evaluation.done()) {
-    if (stop_requested()) {
-      return stopped();
-    }
-    progress.show(name_of(evaluation.stage()), evaluation.progress());
-    evaluation.step(workspace);
-  }
-  evaluation.lend_trial_store({});
-  return evaluation.status() == Status::kOk ? Problem{} : describe(evaluation, options);
-}
-
-// Everything from the measurement to the results.
-Problem work(const ReportOptions& options, BenchJob& bench, app::Evaluation& evaluation) {
-  static app::EvaluationWorkspace workspace;
   ConsoleProgress progress;
-  Problem problem = options.measures() ? bench.run(options, progress) : Problem{};
+  Problem problem = start(options, job);
   if (!problem) {
-    problem = start(options, bench.sweep(), evaluation, workspace);
+    problem = job.run(progress);
   }
-  return problem ? problem : run(options, progress, evaluation, workspace);
+  if (!problem && sequencer.failure()) {
+    problem = describe(sequencer.evaluation(), options);
+  }
+  return problem;
 }
 
 void write_text(const Results& results, app::TextWriter& out) {
@@ -149,7 +142,7 @@ Problem print(Write write) {
 }
 
 // The files and the text of a measurement that has led to no result: what there is.
-Problem keep(const app::ReportContext& context, const app::Evaluation* refused, bool json,
+Problem keep(const app::ReportContext& context, const app::EvaluationResults* refused, bool json,
              OutputFiles* files) {
   if (Problem problem =
           files != nullptr ? write_fault_files(context, refused, *files) : Problem{}) {
@@ -162,8 +155,8 @@ Problem keep(const app::ReportContext& context, const app::Evaluation* refused, 
 // The fault, and in the same line what became of what there is.
 Problem keep_and_report(const Problem& fault, const Results& results, bool json,
                         OutputFiles* files) {
-  const bool was_swept = results.context.measurement->sweep.status() == Status::kOk;
-  const app::Evaluation* refused = was_swept ? &results.evaluation : nullptr;
+  const bool was_swept = results.context.measurement->sweep.status == Status::kOk;
+  const app::EvaluationResults* refused = was_swept ? &results.evaluation : nullptr;
   Problem problem = fault;
   if (const Problem kept = keep(results.context, refused, json, files)) {
     problem.line += kept.line.empty() ? "" : "; " + kept.line;
@@ -184,13 +177,13 @@ Problem run_report(Span<const std::string_view> arguments) {
     return problem;
   }
   static BenchJob bench;
-  static app::Evaluation evaluation;
-  const Problem problem_of_work = work(options, bench, evaluation);
+  const Problem problem_of_work = work(options, bench);
   const std::string points_name = name_of_input(options.points_path);
   const app::Measurement measurement = bench.measurement();
   const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                       options.measures() ? &measurement : nullptr, options.labels(),
                                       options.in_g};
+  const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const Results results = {evaluation, context};
   if (problem_of_work) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();

@@ -13,7 +13,7 @@ namespace {
 using emax::Method;
 using emax::Status;
 using emax::app::Device;
-using emax::app::Evaluation;
+using emax::app::EvaluationResults;
 using emax::app::EvaluationWorkspace;
 using emax::app::Goal;
 using emax::app::Settings;
@@ -22,6 +22,7 @@ using emax::app::TextWriter;
 using emax::test::finish;
 using emax::test::kTable2;
 using emax::test::quick_settings;
+using emax::test::run_on;
 using emax::test::shared_workspace;
 using emax::test::synthetic_points;
 using emax::test::text_of;
@@ -33,7 +34,7 @@ Settings with_trend() {
 }
 
 /// Everything that an evaluation has to say.
-std::string words_of(const Evaluation& evaluation) {
+std::string words_of(const EvaluationResults& evaluation) {
   return text_of([&](TextWriter& out) {
     emax::app::write_report(evaluation, {"x.csv"}, out);
     emax::app::write_json(evaluation, {"x.csv"}, out);
@@ -44,9 +45,8 @@ std::string words_of(const Evaluation& evaluation) {
 }
 
 std::string one_run(const Settings& settings) {
-  const auto evaluation = std::make_unique<Evaluation>();
-  EXPECT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace()),
-            Status::kOk);
+  const auto evaluation = std::make_unique<EvaluationResults>();
+  EXPECT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings), Status::kOk);
   finish(*evaluation);
   EXPECT_EQ(evaluation->status(), Status::kOk);
   return words_of(*evaluation);
@@ -62,11 +62,11 @@ void overwrite_workspace() {
   new (&shared_workspace()) EvaluationWorkspace();
 }
 
-void pursue(Evaluation& evaluation, const Settings& settings, Goal goal) {
+void pursue(EvaluationResults& evaluation, const Settings& settings, Goal goal) {
   overwrite_workspace();
-  ASSERT_EQ(evaluation.pursue(settings, goal, shared_workspace()), Status::kOk);
+  ASSERT_EQ(run_on(evaluation).pursue(settings, goal), Status::kOk);
   finish(evaluation);
-  ASSERT_EQ(evaluation.stage(), Stage::kDone);
+  ASSERT_EQ(evaluation.stage, Stage::kDone);
 }
 
 TEST(Goals, AnyOrderGivesTheDigitsOfOneRun) {
@@ -77,9 +77,8 @@ TEST(Goals, AnyOrderGivesTheDigitsOfOneRun) {
                             {Goal::kMonteCarlo, Goal::kTrend, Goal::kMonteCarlo, Goal::kEnergy},
                             {Goal::kEnergy, Goal::kEnergy, Goal::kTrend, Goal::kMonteCarlo}};
   for (const auto& order : orders) {
-    const auto evaluation = std::make_unique<Evaluation>();
-    ASSERT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace(),
-                                            order[0]),
+    const auto evaluation = std::make_unique<EvaluationResults>();
+    ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings, order[0]),
               Status::kOk);
     finish(*evaluation);
     for (const Goal goal : {order[1], order[2], order[3], Goal::kReport}) {
@@ -91,22 +90,21 @@ TEST(Goals, AnyOrderGivesTheDigitsOfOneRun) {
 
 TEST(Goals, DoNoMoreThanTheyAsk) {
   const Settings settings = with_trend();
-  const auto evaluation = std::make_unique<Evaluation>();
+  const auto evaluation = std::make_unique<EvaluationResults>();
   const auto has = [&](bool draws, bool energy, bool trials, bool trend) {
-    EXPECT_TRUE(evaluation->has_model());
+    EXPECT_TRUE(evaluation->has_model);
     EXPECT_TRUE(evaluation->has_fit());
-    EXPECT_EQ(evaluation->has_fit_draws(), draws);
-    EXPECT_EQ(evaluation->has_energy(), energy);
-    EXPECT_EQ(evaluation->has_bound(), energy);
-    EXPECT_EQ(evaluation->has_monte_carlo(), trials);
-    EXPECT_EQ(evaluation->has_trend(), trend);
+    EXPECT_EQ(evaluation->has_fit_draws, draws);
+    EXPECT_EQ(evaluation->has_energy, energy);
+    EXPECT_EQ(evaluation->has_bound, energy);
+    EXPECT_EQ(evaluation->has_monte_carlo, trials);
+    EXPECT_EQ(evaluation->has_trend, trend);
   };
-  ASSERT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace(),
-                                          Goal::kModel),
+  ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings, Goal::kModel),
             Status::kOk);
-  EXPECT_FALSE(evaluation->has_model());
+  EXPECT_FALSE(evaluation->has_model);
   finish(*evaluation);
-  EXPECT_NEAR(evaluation->peak().value, 17462.4, 1e-2 * 17462.4);
+  EXPECT_NEAR(evaluation->peak.value, 17462.4, 1e-2 * 17462.4);
   has(false, false, false, false);
   pursue(*evaluation, settings, Goal::kEnergy);
   has(false, true, false, false);
@@ -117,47 +115,44 @@ TEST(Goals, DoNoMoreThanTheyAsk) {
   pursue(*evaluation, settings, Goal::kReport);
   has(true, true, true, true);
   // All there: done at once.
-  ASSERT_EQ(evaluation->pursue(settings, Goal::kReport, shared_workspace()), Status::kOk);
-  EXPECT_EQ(evaluation->stage(), Stage::kDone);
+  ASSERT_EQ(run_on(*evaluation).pursue(settings, Goal::kReport), Status::kOk);
+  EXPECT_EQ(evaluation->stage, Stage::kDone);
 }
 
 TEST(Goals, OtherTrialsOrTimesAreComputedAnewAndTheRestIsKept) {
   Settings settings = with_trend();
-  const auto evaluation = std::make_unique<Evaluation>();
-  ASSERT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace()),
-            Status::kOk);
+  const auto evaluation = std::make_unique<EvaluationResults>();
+  ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings), Status::kOk);
   finish(*evaluation);
   settings.seed[0] += 1;
   settings.probability = 0.9;
   settings.trend_s[1] = 0.003;
-  ASSERT_EQ(evaluation->pursue(settings, Goal::kReport, shared_workspace()), Status::kOk);
-  EXPECT_TRUE(evaluation->has_energy());
-  EXPECT_EQ(evaluation->stage(), Stage::kFitDraws);
+  ASSERT_EQ(run_on(*evaluation).pursue(settings, Goal::kReport), Status::kOk);
+  EXPECT_TRUE(evaluation->has_energy);
+  EXPECT_EQ(evaluation->stage, Stage::kFitDraws);
   finish(*evaluation);
   EXPECT_EQ(words_of(*evaluation), one_run(settings));
   // What other settings have made is dropped even where it is not asked for.
   settings.trials = 2000;
   pursue(*evaluation, settings, Goal::kTrend);
-  EXPECT_FALSE(evaluation->has_monte_carlo());
-  EXPECT_TRUE(evaluation->has_fit_draws());
-  EXPECT_TRUE(evaluation->has_trend());
+  EXPECT_FALSE(evaluation->has_monte_carlo);
+  EXPECT_TRUE(evaluation->has_fit_draws);
+  EXPECT_TRUE(evaluation->has_trend);
 }
 
 TEST(Goals, ARefusalLeavesTheResults) {
   Settings settings = with_trend();
-  const auto evaluation = std::make_unique<Evaluation>();
-  EXPECT_EQ(evaluation->pursue(settings, Goal::kEnergy, shared_workspace()),
-            Status::kInvalidArgument);
-  EXPECT_NE(evaluation->failure().reason, nullptr);
-  ASSERT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace()),
-            Status::kOk);
+  const auto evaluation = std::make_unique<EvaluationResults>();
+  EXPECT_EQ(run_on(*evaluation).pursue(settings, Goal::kEnergy), Status::kInvalidArgument);
+  EXPECT_NE(evaluation->failure.reason, nullptr);
+  ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings), Status::kOk);
   finish(*evaluation);
   const std::string expected = words_of(*evaluation);
   const auto refused = [&](const Settings& other, Status status) {
-    EXPECT_EQ(evaluation->pursue(other, Goal::kReport, shared_workspace()), status);
-    EXPECT_EQ(evaluation->failure().status, status);
-    EXPECT_NE(evaluation->failure().reason, nullptr);
-    EXPECT_EQ(evaluation->stage(), Stage::kDone);
+    EXPECT_EQ(run_on(*evaluation).pursue(other, Goal::kReport), status);
+    EXPECT_EQ(evaluation->failure.status, status);
+    EXPECT_NE(evaluation->failure.reason, nullptr);
+    EXPECT_EQ(evaluation->stage, Stage::kDone);
     EXPECT_EQ(words_of(*evaluation), expected);
   };
   Settings other = settings;
@@ -173,32 +168,31 @@ TEST(Goals, ARefusalLeavesTheResults) {
   other.trend_s[1] = 0.2;
   refused(other, Status::kTooManyCells);
   // What no goal asks for does not matter.
-  ASSERT_EQ(evaluation->pursue(other, Goal::kMonteCarlo, shared_workspace()), Status::kOk);
-  EXPECT_EQ(evaluation->failure().status, Status::kOk);
+  ASSERT_EQ(run_on(*evaluation).pursue(other, Goal::kMonteCarlo), Status::kOk);
+  EXPECT_EQ(evaluation->failure.status, Status::kOk);
 }
 
 TEST(Goals, StopKeepsWhatIsComplete) {
   const Settings settings = with_trend();
   const std::string expected = one_run(settings);
-  const auto evaluation = std::make_unique<Evaluation>();
-  evaluation->stop();
-  EXPECT_EQ(evaluation->stage(), Stage::kIdle);
+  const auto evaluation = std::make_unique<EvaluationResults>();
+  run_on(*evaluation).stop();
+  EXPECT_EQ(evaluation->stage, Stage::kIdle);
   for (const Stage stage : {Stage::kModel, Stage::kFitDraws, Stage::kEnergy, Stage::kBound,
                             Stage::kPrediction, Stage::kMonteCarlo, Stage::kGuard, Stage::kTrend}) {
-    ASSERT_EQ(evaluation->start_from_points(synthetic_points(1.0), settings, shared_workspace()),
-              Status::kOk);
-    while (evaluation->stage() != stage) {
-      evaluation->step(shared_workspace());
+    ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings), Status::kOk);
+    while (evaluation->stage != stage) {
+      run_on(*evaluation).step();
     }
-    evaluation->step(shared_workspace());
-    evaluation->stop();
+    run_on(*evaluation).step();
+    run_on(*evaluation).stop();
     EXPECT_TRUE(evaluation->done());
     EXPECT_EQ(evaluation->status(), Status::kOk);
-    EXPECT_EQ(evaluation->has_fit_draws(), stage > Stage::kFitDraws);
-    EXPECT_EQ(evaluation->has_energy(), stage > Stage::kEnergy);
-    EXPECT_EQ(evaluation->has_bound(), stage > Stage::kBound);
-    EXPECT_EQ(evaluation->has_monte_carlo(), stage > Stage::kGuard);
-    EXPECT_FALSE(evaluation->has_trend());
+    EXPECT_EQ(evaluation->has_fit_draws, stage > Stage::kFitDraws);
+    EXPECT_EQ(evaluation->has_energy, stage > Stage::kEnergy);
+    EXPECT_EQ(evaluation->has_bound, stage > Stage::kBound);
+    EXPECT_EQ(evaluation->has_monte_carlo, stage > Stage::kGuard);
+    EXPECT_FALSE(evaluation->has_trend);
     EXPECT_TRUE(evaluation->trend_points().empty());
     pursue(*evaluation, settings, Goal::kReport);
     EXPECT_EQ(words_of(*evaluation), expected) << static_cast<int>(stage);
@@ -210,19 +204,16 @@ TEST(Goals, TrialsOfThePaperHaveRoomForFewerCells) {
   settings.method = Method::kPaper;
   settings.iterations = 1;
   settings.duration_s = 6162 * 2e-6;
-  const auto evaluation = std::make_unique<Evaluation>();
-  EXPECT_EQ(evaluation->start_from_model(kTable2, settings, shared_workspace()), Status::kOk);
+  const auto evaluation = std::make_unique<EvaluationResults>();
+  EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings), Status::kOk);
   finish(*evaluation);
-  EXPECT_TRUE(evaluation->has_monte_carlo());
+  EXPECT_TRUE(evaluation->has_monte_carlo);
   settings.duration_s = 6163 * 2e-6;
-  EXPECT_EQ(evaluation->start_from_model(kTable2, settings, shared_workspace()),
-            Status::kTooManyCells);
-  EXPECT_EQ(evaluation->failure().stage, Stage::kMonteCarlo);
-  EXPECT_EQ(evaluation->start_from_model(kTable2, settings, shared_workspace(), Goal::kTrend),
+  EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings), Status::kTooManyCells);
+  EXPECT_EQ(evaluation->failure.stage, Stage::kMonteCarlo);
+  EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings, Goal::kTrend), Status::kOk);
+  EXPECT_EQ(run_on(*evaluation).start_from_model(Device{kTable2.estimate, {}}, settings),
             Status::kOk);
-  EXPECT_EQ(
-      evaluation->start_from_model(Device{kTable2.estimate, {}}, settings, shared_workspace()),
-      Status::kOk);
 }
 
 }  // namespace

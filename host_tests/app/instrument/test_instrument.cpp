@@ -521,7 +521,7 @@ TEST(Instrument, SendsTheReportAsABlock) {
   settings.trials = 1000;
   settings.trend_s = {0.002, 0.003};
   settings.trend_count = 2;
-  const app::Evaluation& evaluation = test::evaluated(test::kTable2, settings);
+  const app::EvaluationResults& evaluation = test::evaluated(test::kTable2, settings);
   test::StringSink sink;
   app::TextWriter out(sink);
   write_report(evaluation, app::ReportContext{}, out);

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "emax/app/measure/sweep.hpp"
+#include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "app/sweep_run.hpp"
@@ -22,6 +24,7 @@ using emax::Status;
 using emax::app::default_sweep_settings;
 using emax::app::Sweep;
 using emax::app::SweepPoint;
+using emax::app::SweepResults;
 using emax::app::SweepSettings;
 using emax::app::SweepStage;
 using emax::app::SweepWorkspace;
@@ -48,7 +51,7 @@ TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
     bench.seed = seed;
     SweepRun run(bench);
     run.to_end(default_sweep_settings());
-    ASSERT_EQ(run.sweep.status(), Status::kOk);
+    ASSERT_EQ(run.sweep.status, Status::kOk);
     ASSERT_EQ(run.sweep.points().size(), 42U);
     for (const SweepPoint& point : run.sweep.points()) {
       // What is common to all points is taken out: they are to scatter about the apparent response.
@@ -66,13 +69,13 @@ TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
       EXPECT_LT(point.residual_percent, 1.5);
     }
     // The certificate, the gains and the mounting; the check adds what it saw.
-    EXPECT_NEAR(run.sweep.common().total, std::sqrt(0.25 * 0.25 + 0.05 * 0.05 + 0.1 * 0.1) / 100.0,
+    EXPECT_NEAR(run.sweep.common.total, std::sqrt(0.25 * 0.25 + 0.05 * 0.05 + 0.1 * 0.1) / 100.0,
                 5e-5);
-    EXPECT_LT(run.sweep.common().drift, 3e-4);
+    EXPECT_LT(run.sweep.common.drift, 3e-4);
     // 5 mV, from 288 degrees of freedom.
-    EXPECT_NEAR(run.sweep.noise().reference_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
-    EXPECT_NEAR(run.sweep.noise().device_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
-    EXPECT_GE(run.sweep.noise().dof, 250U);
+    EXPECT_NEAR(run.sweep.noise.reference_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
+    EXPECT_NEAR(run.sweep.noise.device_v, 5e-3, 4 * 5e-3 / std::sqrt(2 * 250.0));
+    EXPECT_GE(run.sweep.noise.dof, 250U);
   }
   const auto n = static_cast<double>(components);
   EXPECT_NEAR(squares / n, 1.0, 4.0 * std::sqrt(2.0 / n));
@@ -81,7 +84,7 @@ TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
 TEST(Sweep, IdealBenchComesBackExactly) {
   SweepRun run(ideal_bench());
   run.to_end(default_sweep_settings());
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   for (const SweepPoint& point : run.sweep.points()) {
     const std::complex<double> k =
         response_of(run.bench.truth().device, 1.037, point.point.frequency_hz);
@@ -104,7 +107,7 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
       settings.frequency_hz = {200.0, 1000.0, 4000.0};
       settings.frequency_count = 3;
       run.to_end(settings);
-      ASSERT_EQ(run.sweep.status(), Status::kOk) << block << " " << latency;
+      ASSERT_EQ(run.sweep.status, Status::kOk) << block << " " << latency;
       for (const SweepPoint& point : run.sweep.points()) {
         const std::complex<double> k =
             response_of(run.bench.truth().device, run.bench.truth().apparent_sensitivity,
@@ -116,7 +119,7 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
   }
 }
 
-void expect_same_points(const Sweep& sweep, const std::vector<SweepPoint>& expected) {
+void expect_same_points(const SweepResults& sweep, const std::vector<SweepPoint>& expected) {
   ASSERT_EQ(sweep.points().size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(sweep.points()[i].point.amplitude, expected[i].point.amplitude);
@@ -132,7 +135,7 @@ TEST(Sweep, RunsAgainWithTheSameBits) {
   settings.frequency_count = 3;
   SweepRun run((BenchSettings()));
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   const std::vector<SweepPoint> before(run.sweep.points().begin(), run.sweep.points().end());
   BenchSettings other;
   other.seed = 99;
@@ -149,47 +152,46 @@ TEST(Sweep, WhatTheWorkspaceHoldsBeforeAndAfterDoesNotMatter) {
   settings.frequency_count = 3;
   SweepRun clean((BenchSettings()));
   clean.to_end(settings);
-  ASSERT_EQ(clean.sweep.status(), Status::kOk);
+  ASSERT_EQ(clean.sweep.status, Status::kOk);
   const std::vector<SweepPoint> expected(clean.sweep.points().begin(), clean.sweep.points().end());
   // The bytes of other work, as numbers small, large, negative and none at all.
   for (const int byte : {0x00, 0x3F, 0x7F, 0xC0, 0xFF}) {
     SweepRun run((BenchSettings()));
     std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
     run.to_end(settings);
-    ASSERT_EQ(run.sweep.status(), Status::kOk) << byte;
+    ASSERT_EQ(run.sweep.status, Status::kOk) << byte;
     std::memset(static_cast<void*>(&run.work), byte, sizeof(run.work));
-    EXPECT_EQ(run.sweep.noise().device_v, clean.sweep.noise().device_v);
-    EXPECT_EQ(run.sweep.common().total, clean.sweep.common().total);
+    EXPECT_EQ(run.sweep.noise.device_v, clean.sweep.noise.device_v);
+    EXPECT_EQ(run.sweep.common.total, clean.sweep.common.total);
     expect_same_points(run.sweep, expected);
   }
 }
 
 TEST(Sweep, HasNoSettingsBeforeItsFirstStart) {
-  static Sweep sweep;
-  EXPECT_EQ(sweep.settings().frequency_count, 0U);
-  EXPECT_EQ(sweep.settings().repeats, 0U);
-  EXPECT_EQ(sweep.settings().reference.count, 0U);
-  EXPECT_EQ(sweep.settings().expected_sensitivity, 0.0);
+  static SweepResults sweep;
+  EXPECT_EQ(sweep.settings.frequency_count, 0U);
+  EXPECT_EQ(sweep.settings.repeats, 0U);
+  EXPECT_EQ(sweep.settings.reference.count, 0U);
+  EXPECT_EQ(sweep.settings.expected_sensitivity, 0.0);
 }
 
 TEST(Sweep, StagesFollowEachOther) {
   SweepRun run((BenchSettings()));
   EXPECT_TRUE(run.sweep.done());
-  EXPECT_EQ(run.sweep.stage(), SweepStage::kIdle);
-  run.sweep.step(run.bench, run.work);  // Nothing.
-  ASSERT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work), Status::kOk);
-  EXPECT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work),
-            Status::kAlreadyRunning);
+  EXPECT_EQ(run.sweep.stage, SweepStage::kIdle);
+  run.step();  // Nothing.
+  ASSERT_EQ(run.start(default_sweep_settings()), Status::kOk);
+  EXPECT_EQ(run.start(default_sweep_settings()), Status::kAlreadyRunning);
   emax::FrequencyResponse response;
   EXPECT_EQ(run.sweep.copy_to(response), Status::kNotRunning);
-  std::vector<SweepStage> stages = {run.sweep.stage()};
+  std::vector<SweepStage> stages = {run.sweep.stage};
   double progress = 0.0;
   while (!run.sweep.done()) {
-    run.sweep.step(run.bench, run.work);
+    run.step();
     EXPECT_GE(run.sweep.progress(), progress);
     progress = run.sweep.progress();
-    if (run.sweep.stage() != stages.back()) {
-      stages.push_back(run.sweep.stage());
+    if (run.sweep.stage != stages.back()) {
+      stages.push_back(run.sweep.stage);
     }
   }
   const std::vector<SweepStage> expected = {SweepStage::kSilence, SweepStage::kCheckBefore,
@@ -201,7 +203,7 @@ TEST(Sweep, StagesFollowEachOther) {
   EXPECT_EQ(run.bench.dac().last, 0);
   ASSERT_EQ(run.sweep.copy_to(response), Status::kOk);
   EXPECT_EQ(response.size(), 42U);
-  EXPECT_EQ(response.common()[41], run.sweep.common().total);
+  EXPECT_EQ(response.common()[41], run.sweep.common.total);
   EXPECT_EQ(response.points()[7].u_amplitude, run.sweep.points()[7].point.u_amplitude);
 }
 
@@ -227,7 +229,7 @@ TEST(Sweep, DriveKeepsItsLimits) {
     settings.drive_limit_v = c.drive_limit_v;
     settings.slew_v_per_s = c.slew_v_per_s;
     run.to_end(settings);
-    EXPECT_EQ(run.sweep.status(), Status::kOk) << c.level_mps2;
+    EXPECT_EQ(run.sweep.status, Status::kOk) << c.level_mps2;
     run.expect_limits_kept(settings);
   }
 }
@@ -236,15 +238,15 @@ TEST(Sweep, StopsBetweenAnyTwoBlocks) {
   for (const std::uint64_t blocks : {0U, 1U, 200U, 400U, 900U, 3000U, 6000U, 8950U}) {
     SweepRun run((BenchSettings()));
     SweepSettings settings = default_sweep_settings();
-    ASSERT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
-    while (run.sweep.blocks() < blocks) {
-      run.sweep.step(run.bench, run.work);
+    ASSERT_EQ(run.start(settings), Status::kOk);
+    while (run.sweep.blocks < blocks) {
+      run.step();
     }
     const std::uint64_t before = run.bench.clock_frames();
     const std::size_t points = run.sweep.points().size();
-    run.sweep.stop(run.bench, run.work);
+    run.stop();
     EXPECT_TRUE(run.sweep.done());
-    EXPECT_EQ(run.sweep.status(), Status::kStopped);
+    EXPECT_EQ(run.sweep.status, Status::kStopped);
     EXPECT_EQ(run.sweep.points().size(), points);
     EXPECT_LE(run.bench.clock_frames() - before, emax::hal::kMaxRampFrames);
     EXPECT_EQ(run.bench.dac().last, 0);
@@ -253,10 +255,10 @@ TEST(Sweep, StopsBetweenAnyTwoBlocks) {
       EXPECT_GT(point.point.u_amplitude, 0.0);
     }
     run.expect_limits_kept(settings);
-    run.sweep.stop(run.bench, run.work);
-    run.sweep.step(run.bench, run.work);
-    EXPECT_EQ(run.sweep.status(), Status::kStopped);
-    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kOk);
+    run.stop();
+    run.step();
+    EXPECT_EQ(run.sweep.status, Status::kStopped);
+    EXPECT_EQ(run.start(settings), Status::kOk);
   }
 }
 
@@ -268,7 +270,7 @@ TEST(Sweep, OverrangeLowersTheDrive) {
   settings.device_gain = 20.0;
   SweepRun run(bench);
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   for (const SweepPoint& point : run.sweep.points()) {
     const std::complex<double> k = response_of(
         run.bench.truth().device, run.bench.truth().apparent_sensitivity, point.point.frequency_hz);
@@ -313,18 +315,19 @@ double drive_with_spike(double volts) {
   settings.frequency_count = 3;
   settings.acceleration_limit_mps2 = 5.0;  // 1 V per m/s^2.
   EchoStream stream;
-  static Sweep sweep;
+  static SweepResults results;
   static SweepWorkspace work;
-  EXPECT_EQ(sweep.start(settings, stream, work), Status::kOk);
-  while (!sweep.done() && sweep.stage() != SweepStage::kPoints) {
-    sweep.step(stream, work);
+  Sweep sweep(results, work, stream);
+  EXPECT_EQ(sweep.start(settings), Status::kOk);
+  while (!sweep.done() && results.stage != SweepStage::kPoints) {
+    sweep.step();
   }
   stream.spike(volts);
   while (!sweep.done()) {
-    sweep.step(stream, work);
+    sweep.step();
   }
-  EXPECT_EQ(sweep.status(), Status::kOk);
-  return sweep.points()[0].drive_v;
+  EXPECT_EQ(results.status, Status::kOk);
+  return results.points()[0].drive_v;
 }
 
 TEST(Sweep, APeakOfEitherSignBeyondTheLimitLowersTheDrive) {
@@ -341,7 +344,7 @@ TEST(Sweep, WeakSignalRaisesTheDrive) {
   settings.level_mps2 = 0.02;
   SweepRun run(bench);
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   EXPECT_NEAR(run.sweep.points()[20].acceleration_mps2, 0.02, 0.0015);
 }
 
@@ -351,7 +354,7 @@ TEST(Sweep, LevelAtTheAccelerationLimit) {
   settings.acceleration_limit_mps2 = 2.0;
   SweepRun run((BenchSettings()));
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   for (const SweepPoint& point : run.sweep.points()) {
     EXPECT_LT(point.acceleration_mps2, 2.0);
     // Half where the shaker's swing has gone beyond the limit on the way.
@@ -364,8 +367,8 @@ TEST(Sweep, UnreachableLevel) {
   settings.level_mps2 = 19.0;  // 5 V reach 10 m/s^2.
   SweepRun run((BenchSettings()));
   run.to_end(settings);
-  EXPECT_EQ(run.sweep.status(), Status::kLevelNotReached);
-  EXPECT_EQ(run.sweep.failed_frequency_hz(), 160.0);
+  EXPECT_EQ(run.sweep.status, Status::kLevelNotReached);
+  EXPECT_EQ(run.sweep.failed_frequency_hz, 160.0);
   run.expect_limits_kept(settings);
 
   // At 6 kHz the slope permits 0.9 (20 kV/s)/(2 pi 6 kHz) = 0.48 V; at 3 kHz it is enough.
@@ -374,8 +377,8 @@ TEST(Sweep, UnreachableLevel) {
   settings.level_mps2 = 1.5;
   SweepRun slow((BenchSettings()));
   slow.to_end(settings);
-  EXPECT_EQ(slow.sweep.status(), Status::kLevelNotReached);
-  EXPECT_GT(slow.sweep.failed_frequency_hz(), 3000.0);
+  EXPECT_EQ(slow.sweep.status, Status::kLevelNotReached);
+  EXPECT_GT(slow.sweep.failed_frequency_hz, 3000.0);
   EXPECT_GT(slow.sweep.points().size(), 26U);
   slow.expect_limits_kept(settings);
 }
@@ -385,7 +388,7 @@ TEST(Sweep, DeadShaker) {
   bench.shaker.gain = 1e-7;
   SweepRun run(bench);
   run.to_end(default_sweep_settings());
-  EXPECT_EQ(run.sweep.status(), Status::kWeakSignal);
+  EXPECT_EQ(run.sweep.status, Status::kWeakSignal);
   run.expect_limits_kept(default_sweep_settings());
 }
 
@@ -394,7 +397,7 @@ TEST(Sweep, DistortionIsFlaggedThenRefused) {
   bench.second_harmonic = 0.1;  // 5 % at 0.5 V.
   SweepRun flagged(bench);
   flagged.to_end(default_sweep_settings());
-  ASSERT_EQ(flagged.sweep.status(), Status::kOk);
+  ASSERT_EQ(flagged.sweep.status, Status::kOk);
   EXPECT_TRUE(flagged.sweep.points()[10].flagged);
   EXPECT_NEAR(flagged.sweep.points()[10].residual_percent, 3.6, 0.8);
   SweepRun clean((BenchSettings()));
@@ -405,7 +408,7 @@ TEST(Sweep, DistortionIsFlaggedThenRefused) {
   settings.level_mps2 = 5.0;  // 2.5 V: 25 %.
   SweepRun refused(bench);
   refused.to_end(settings);
-  EXPECT_EQ(refused.sweep.status(), Status::kDistorted);
+  EXPECT_EQ(refused.sweep.status, Status::kDistorted);
 }
 
 TEST(Sweep, ReferenceTableIsInterpolated) {
@@ -418,7 +421,7 @@ TEST(Sweep, ReferenceTableIsInterpolated) {
   settings.reference.sensitivity = {0.1, 0.2, 0.1};
   SweepRun run(ideal_bench());
   run.to_end(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   const double factors[] = {1.0, 1.5, 1.0};
   for (std::size_t i = 0; i < 3; ++i) {
     const SweepPoint& point = run.sweep.points()[i];
@@ -434,12 +437,12 @@ TEST(Sweep, DriftOfTheCheckEntersTheCommonPart) {
   bench.seed = 4;
   SweepRun run(bench);
   run.to_end(default_sweep_settings());
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   // Both checks are near the ends of the sweep: 0.36 s and 5.86 s of the 10 s of the drift.
   const double change = run.bench.truth().reference_drift * 0.55;
   ASSERT_GT(std::fabs(change), 1e-3);
-  EXPECT_NEAR(run.sweep.common().drift, std::fabs(change) / std::sqrt(3.0), 3e-4);
-  EXPECT_GT(run.sweep.common().total, run.sweep.common().drift);
+  EXPECT_NEAR(run.sweep.common.drift, std::fabs(change) / std::sqrt(3.0), 3e-4);
+  EXPECT_GT(run.sweep.common.total, run.sweep.common.drift);
 }
 
 TEST(Sweep, HumRaisesTheUncertaintyWhereItIs) {
@@ -447,7 +450,7 @@ TEST(Sweep, HumRaisesTheUncertaintyWhereItIs) {
   bench.hum_v = 5e-3;
   SweepRun run(bench);
   run.to_end(default_sweep_settings());
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   const SweepPoint& at50 = run.sweep.points()[2];
   ASSERT_EQ(at50.point.frequency_hz, 50.0);
   // 5 mV on 1 V in each channel, half of its square on each component.
@@ -525,24 +528,25 @@ TEST(Sweep, BadSettingsAreRefusedByName) {
   for (const BadSetting& bad : kBad) {
     SweepSettings settings = default_sweep_settings();
     bad.spoil(settings);
-    EXPECT_EQ(run.sweep.start(settings, run.bench, run.work), Status::kInvalidArgument) << bad.name;
-    ASSERT_NE(run.sweep.refused_setting(), nullptr);
-    EXPECT_EQ(std::string(run.sweep.refused_setting()), bad.name);
-    EXPECT_GT(std::strlen(run.sweep.refused_expectation()), 5U);
+    EXPECT_EQ(run.start(settings), Status::kInvalidArgument) << bad.name;
+    ASSERT_NE(run.sweep.refused.setting, nullptr);
+    EXPECT_EQ(std::string(run.sweep.refused.setting), bad.name);
+    EXPECT_GT(std::strlen(run.sweep.refused.expectation), 5U);
     EXPECT_FALSE(run.bench.running());
     EXPECT_EQ(run.sweep.points().size(), 3U);  // What was measured before is still there.
   }
-  ASSERT_EQ(run.sweep.start(default_sweep_settings(), run.bench, run.work), Status::kOk);
-  EXPECT_EQ(run.sweep.refused_setting(), nullptr);
+  ASSERT_EQ(run.start(default_sweep_settings()), Status::kOk);
+  EXPECT_EQ(run.sweep.refused.setting, nullptr);
 }
 
 TEST(Sweep, BenchThatDoesNotStart) {
   SimBench bench;  // Not configured.
-  static Sweep sweep;
+  static SweepResults results;
   static SweepWorkspace work;
-  EXPECT_EQ(sweep.start(default_sweep_settings(), bench, work), Status::kHardwareFault);
+  Sweep sweep(results, work, bench);
+  EXPECT_EQ(sweep.start(default_sweep_settings()), Status::kHardwareFault);
   EXPECT_TRUE(sweep.done());
-  EXPECT_EQ(sweep.refused_setting(), nullptr);
+  EXPECT_EQ(results.refused.setting, nullptr);
 }
 
 }  // namespace

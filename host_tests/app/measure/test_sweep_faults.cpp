@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "emax/app/measure/sweep.hpp"
+#include "emax/app/measure/sweep_results.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "app/sweep_run.hpp"
@@ -56,9 +56,9 @@ TEST_P(SweepFaults, AreNamedAndEndAtZero) {
       settings.fault = {GetParam().fault, at_frame};
       SweepRun run(settings);
       run.to_end(default_sweep_settings());
-      EXPECT_EQ(run.sweep.status(), GetParam().status)
-          << "frame " << at_frame << ": " << emax::explain(run.sweep.status());
-      EXPECT_EQ(run.sweep.stage(), SweepStage::kFailed);
+      EXPECT_EQ(run.sweep.status, GetParam().status)
+          << "frame " << at_frame << ": " << emax::explain(run.sweep.status);
+      EXPECT_EQ(run.sweep.stage, SweepStage::kFailed);
       // The step that detects it exchanges a block (two where one is lost), leads the drive to zero
       // and lets the frames on their way arrive.
       EXPECT_LE(run.last_step_frames, 2 * 64 + emax::hal::kMaxRampFrames + 37);
@@ -98,12 +98,12 @@ TEST(SweepFaults, GainThatWasSetWrong) {
   settings.device_gain = 10.0;
   SweepRun run((BenchSettings()));
   run.to_end(settings);
-  EXPECT_EQ(run.sweep.status(), Status::kSwappedChannels);
-  EXPECT_EQ(run.sweep.failed_frequency_hz(), 160.0);
+  EXPECT_EQ(run.sweep.status, Status::kSwappedChannels);
+  EXPECT_EQ(run.sweep.failed_frequency_hz, 160.0);
   // Without a data sheet it cannot be told.
   settings.expected_sensitivity = 0.0;
   run.to_end(settings);
-  EXPECT_EQ(run.sweep.status(), Status::kOk);
+  EXPECT_EQ(run.sweep.status, Status::kOk);
 }
 
 TEST(SweepFaults, ExchangedCablesWithoutADataSheet) {
@@ -113,11 +113,11 @@ TEST(SweepFaults, ExchangedCablesWithoutADataSheet) {
   bench.fault = {FaultKind::kSwappedChannels, 0};
   SweepRun run(bench);
   run.to_end(settings);
-  EXPECT_EQ(run.sweep.status(), Status::kSwappedChannels);
+  EXPECT_EQ(run.sweep.status, Status::kSwappedChannels);
   bench.fault = {FaultKind::kInvertedPolarity, 0};
   SweepRun inverted(bench);
   inverted.to_end(settings);
-  EXPECT_EQ(inverted.sweep.status(), Status::kInvertedPolarity);
+  EXPECT_EQ(inverted.sweep.status, Status::kInvertedPolarity);
 }
 
 TEST(SweepFaults, PhaseBeyondHalfATurnIsNoFault) {
@@ -130,7 +130,7 @@ TEST(SweepFaults, PhaseBeyondHalfATurnIsNoFault) {
   settings.skew_s = 6e-6;
   SweepRun run(bench);
   run.to_end(settings);
-  EXPECT_EQ(run.sweep.status(), Status::kOk);
+  EXPECT_EQ(run.sweep.status, Status::kOk);
   EXPECT_GT(run.sweep.points()[41].point.phase_rad, 2.5);
 }
 

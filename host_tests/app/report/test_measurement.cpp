@@ -25,11 +25,11 @@ namespace {
 
 using emax::FrequencyResponse;
 using emax::Status;
-using emax::app::Evaluation;
+using emax::app::EvaluationResults;
 using emax::app::Measurement;
 using emax::app::SimulatedBench;
-using emax::app::Sweep;
 using emax::app::SweepPoint;
+using emax::app::SweepResults;
 using emax::app::SweepSettings;
 using emax::app::TextWriter;
 using emax::sim::BenchSettings;
@@ -54,7 +54,7 @@ struct FinishedRun : SweepRun {
 /// The default measurement; made once.
 const SweepRun& good_run() {
   static const FinishedRun run{BenchSettings()};
-  EXPECT_EQ(run.sweep.status(), Status::kOk);
+  EXPECT_EQ(run.sweep.status, Status::kOk);
   return run;
 }
 
@@ -68,28 +68,28 @@ Measurement measurement_of(const SweepRun& run) {
   return {run.sweep, run.bench.format(), &kSimulated};
 }
 
-const Evaluation& evaluated(const Sweep& sweep) {
+const EvaluationResults& evaluated(const SweepResults& sweep) {
   FrequencyResponse points;
   EXPECT_EQ(sweep.copy_to(points), Status::kOk);
   return emax::test::evaluated(points, quick_settings());
 }
 
 std::string report_of(const SweepRun& run) {
-  const Evaluation& evaluation = evaluated(run.sweep);
+  const EvaluationResults& evaluation = evaluated(run.sweep);
   const Measurement measurement = measurement_of(run);
   return text_of([&](TextWriter& out) {
     emax::app::write_report(evaluation, {nullptr, &measurement}, out);
   });
 }
 
-std::string fault_report_of(const SweepRun& run, const Evaluation* refused = nullptr) {
+std::string fault_report_of(const SweepRun& run, const EvaluationResults* refused = nullptr) {
   const Measurement measurement = measurement_of(run);
   return text_of([&](TextWriter& out) {
     emax::app::write_measurement({nullptr, &measurement}, refused, out);
   });
 }
 
-JsonReader fault_json_of(const SweepRun& run, const Evaluation* refused = nullptr) {
+JsonReader fault_json_of(const SweepRun& run, const EvaluationResults* refused = nullptr) {
   const Measurement measurement = measurement_of(run);
   return JsonReader(text_of([&](TextWriter& out) {
     emax::app::write_measurement_json({nullptr, &measurement}, refused, out);
@@ -115,10 +115,10 @@ std::vector<std::vector<double>> budget_of(const std::string& report) {
 
 double root_sum(double a, double b) { return std::sqrt(a * a + b * b); }
 
-void expect_budget(const std::string& report, const Sweep& sweep) {
+void expect_budget(const std::string& report, const SweepResults& sweep) {
   const std::vector<std::vector<double>> rows = budget_of(report);
   ASSERT_EQ(rows.size(), sweep.points().size());
-  const emax::app::CommonBudget& common = sweep.common();
+  const emax::app::CommonBudget& common = sweep.common;
   const double shared = std::sqrt(common.reference * common.reference + common.gain * common.gain +
                                   common.mounting * common.mounting + common.drift * common.drift);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -166,7 +166,7 @@ TEST(Measurement, EstimatesAgainstTruth) {
   ASSERT_EQ(std::sscanf(report.c_str() + at, "the estimates are off by %lf, %lf and %lf u", &off[0],
                         &off[1], &off[2]),
             3);
-  const emax::WlspFit& fit = emax::test::shared_evaluation().fit().result();
+  const emax::WlspFit& fit = emax::test::shared_evaluation().fit.result();
   EXPECT_NEAR(off[0], (fit.model.sensitivity - 1.037) / fit.u_sensitivity, 0.0051);
   EXPECT_NEAR(off[1], (fit.model.natural_frequency_hz - 4073.0) / fit.u_natural_frequency_hz,
               0.0051);
@@ -175,7 +175,7 @@ TEST(Measurement, EstimatesAgainstTruth) {
 
 TEST(Measurement, RealBenchHasNoTruth) {
   const SweepRun& run = good_run();
-  const Evaluation& evaluation = evaluated(run.sweep);
+  const EvaluationResults& evaluation = evaluated(run.sweep);
   const Measurement real = {run.sweep, run.bench.format(), nullptr};
   const std::string report = text_of([&](TextWriter& out) {
     emax::app::write_report(evaluation, {nullptr, &real}, out);
@@ -193,7 +193,7 @@ TEST(Measurement, RealBenchHasNoTruth) {
 
 TEST(Measurement, Json) {
   const SweepRun& run = good_run();
-  const Evaluation& evaluation = evaluated(run.sweep);
+  const EvaluationResults& evaluation = evaluated(run.sweep);
   const Measurement measurement = measurement_of(run);
   const JsonReader json(text_of([&](TextWriter& out) {
     emax::app::write_json(evaluation, {nullptr, &measurement}, out);
@@ -220,7 +220,7 @@ TEST(Measurement, Json) {
   EXPECT_NEAR(json.number("bench.common.drift"),
               std::fabs(after - before) / before / std::sqrt(3.0), 1e-12);
   EXPECT_EQ(json.at("bench.common.reference"), "0.0025");
-  EXPECT_EQ(json.number("bench.common_percent"), 200.0 * run.sweep.common().total);
+  EXPECT_EQ(json.number("bench.common_percent"), 200.0 * run.sweep.common.total);
   EXPECT_EQ(json.number("model.common_percent"), json.number("bench.common_percent"));
   EXPECT_EQ(json.at("bench.flagged[]"), "0");
   EXPECT_EQ(json.at("bench.budget[]"), "42");
@@ -241,24 +241,24 @@ FrequencyResponse table_of(const std::string& text) {
 }
 
 TEST(Measurement, TableCanBeReadBack) {
-  const Sweep& sweep = good_run().sweep;
-  const Evaluation& evaluation = evaluated(sweep);
-  const emax::WlspFit fit = evaluation.fit().result();
+  const SweepResults& sweep = good_run().sweep;
+  const EvaluationResults& evaluation = evaluated(sweep);
+  const emax::WlspFit fit = evaluation.fit.result();
   FrequencyResponse points = table_of(
       text_of([&](TextWriter& out) { emax::app::write_frequency_response_csv(evaluation, out); }));
   ASSERT_EQ(points.size(), 42U);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const emax::ResponsePoint& measured = sweep.points()[i].point;
-    const double total = root_sum(measured.u_amplitude, sweep.common().total * measured.amplitude);
+    const double total = root_sum(measured.u_amplitude, sweep.common.total * measured.amplitude);
     EXPECT_NEAR(points.points()[i].u_amplitude, total, 1e-14 * total);
   }
-  ASSERT_EQ(emax::app::remove_common(points, 200.0 * sweep.common().total).status, Status::kOk);
+  ASSERT_EQ(emax::app::remove_common(points, 200.0 * sweep.common.total).status, Status::kOk);
   // The part of its own is a thirtieth of the total, so 15 digits leave 12 of it.
   for (std::size_t i = 0; i < points.size(); ++i) {
     const emax::ResponsePoint& measured = sweep.points()[i].point;
     EXPECT_NEAR(points.points()[i].u_amplitude, measured.u_amplitude, 1e-10 * measured.u_amplitude);
   }
-  const emax::WlspFit again = emax::test::evaluated(points, quick_settings()).fit().result();
+  const emax::WlspFit again = emax::test::evaluated(points, quick_settings()).fit.result();
   EXPECT_NEAR(again.model.sensitivity, fit.model.sensitivity, 1e-10);
   EXPECT_NEAR(again.model.natural_frequency_hz, fit.model.natural_frequency_hz, 1e-7);
   EXPECT_NEAR(again.model.damping, fit.model.damping, 1e-10);
@@ -285,7 +285,7 @@ TEST(Measurement, FaultKeepsThePointsBeforeIt) {
   const JsonReader json = fault_json_of(run);
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("bench.fault.name"), "no device");
-  EXPECT_EQ(json.number("bench.fault.frequency"), run.sweep.failed_frequency_hz());
+  EXPECT_EQ(json.number("bench.fault.frequency"), run.sweep.failed_frequency_hz);
   EXPECT_EQ(json.at("bench.fault.advice"), emax::explain(Status::kNoDevice));
   EXPECT_EQ(json.at("bench.points"), std::to_string(count));
   EXPECT_EQ(json.at("bench.budget[]"), std::to_string(count));
@@ -325,7 +325,7 @@ TEST(Measurement, PointsThatGiveNoDevice) {
     point.phase_rad += 180.0 * kDegree;
     ASSERT_EQ(points.add(point), Status::kOk);
   }
-  const Evaluation& refused = emax::test::evaluated(points, quick_settings());
+  const EvaluationResults& refused = emax::test::evaluated(points, quick_settings());
   ASSERT_EQ(refused.status(), Status::kInvertedPolarity);
   const std::string report = fault_report_of(good_run(), &refused);
   expect_well_formed(report);
@@ -341,7 +341,7 @@ TEST(Measurement, DistortedPointsAreNamed) {
   BenchSettings settings;
   settings.second_harmonic = 0.08;
   const FinishedRun run(settings);
-  ASSERT_EQ(run.sweep.status(), Status::kOk);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
   std::size_t flagged = 0;
   for (const SweepPoint& point : run.sweep.points()) {
     flagged += point.flagged ? 1U : 0U;
@@ -383,18 +383,18 @@ TEST(Measurement, EachFaultHasItsName) {
 TEST(Measurement, CommonPartOfAPointsTable) {
   FrequencyResponse points = emax::test::table1();
   ASSERT_EQ(emax::app::remove_common(points, 0.5).status, Status::kOk);
-  const Evaluation& evaluation = emax::test::evaluated(points, quick_settings());
+  const EvaluationResults& evaluation = emax::test::evaluated(points, quick_settings());
   const std::string report =
       text_of([&](TextWriter& out) { emax::app::write_report(evaluation, {"t.csv"}, out); });
   expect_well_formed(report);
   EXPECT_TRUE(says(report, "0.2500 % of every amplitude"));
   // Weighted least squares with the full covariance matrix, by NumPy.
-  const emax::WlspFit& fit = evaluation.fit().result();
+  const emax::WlspFit& fit = evaluation.fit.result();
   EXPECT_NEAR(fit.model.sensitivity, 1.00645, 0.5e-5);
   EXPECT_NEAR(fit.u_sensitivity, 0.00270, 0.5e-5);
   EXPECT_NEAR(fit.chi2, 8911.7, 0.05);
   // The draws have it too.
-  EXPECT_NEAR(std::sqrt(evaluation.fit_draws().covariance[0][0]), fit.u_sensitivity,
+  EXPECT_NEAR(std::sqrt(evaluation.fit_draws.covariance[0][0]), fit.u_sensitivity,
               0.03 * fit.u_sensitivity);
   const JsonReader json(
       text_of([&](TextWriter& out) { emax::app::write_json(evaluation, {"t.csv"}, out); }));

@@ -17,7 +17,7 @@ using emax::Criterion;
 using emax::FrequencyResponse;
 using emax::Method;
 using emax::ResponsePoint;
-using emax::app::Evaluation;
+using emax::app::EvaluationResults;
 using emax::app::GainMode;
 using emax::app::reduced_chi_square_limit;
 using emax::app::ReportContext;
@@ -34,7 +34,7 @@ using emax::test::synthetic_points;
 using emax::test::table1;
 using emax::test::text_of;
 
-std::string report_of(const Evaluation& evaluation, const ReportContext& context = {}) {
+std::string report_of(const EvaluationResults& evaluation, const ReportContext& context = {}) {
   return text_of([&](TextWriter& out) { emax::app::write_report(evaluation, context, out); });
 }
 
@@ -115,7 +115,7 @@ TEST(Report, EnoughTrialsGiveNoWarning) {
 }
 
 TEST(Report, TwiceTheSame) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   const std::string first = report_of(evaluation, {"djb.csv"});
   EXPECT_EQ(report_of(evaluation, {"djb.csv"}), first);
 }
@@ -247,7 +247,7 @@ TEST(Report, OtherSettings) {
 }
 
 TEST(Report, Labels) {
-  const Evaluation& evaluation = evaluated(kTable2, quick_settings());
+  const EvaluationResults& evaluation = evaluated(kTable2, quick_settings());
   EXPECT_FALSE(says(report_of(evaluation), "LABELS"));
   ReportContext context;
   context.labels.device = "DJB\nA/1800/V";
@@ -264,7 +264,7 @@ TEST(Report, Labels) {
 }
 
 TEST(Report, UnitsOfGravity) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   EXPECT_FALSE(says(report_of(evaluation), " g)"));
   ReportContext context;
   context.in_g = true;
@@ -310,7 +310,7 @@ class Marks final : public emax::app::ReportMarkup {
 TEST(Report, MarksOfSomebodyElse) {
   Settings settings = quick_settings();
   settings.trend_count = 2;
-  const Evaluation& evaluation = evaluated(table1(), settings);
+  const EvaluationResults& evaluation = evaluated(table1(), settings);
   ReportContext context;
   context.source_name = "<a>.csv";
   context.labels.device = "a\nb";
@@ -329,7 +329,7 @@ TEST(Report, MarksOfSomebodyElse) {
 }
 
 TEST(Report, EnergyDifferenceBelowZeroHasNoRms) {
-  const Evaluation& evaluation =
+  const EvaluationResults& evaluation =
       evaluated({kTable2.estimate, {}}, emax::test::settings_below_zero());
   ASSERT_LT(evaluation.energy_v2s(), 0.0);
   const std::string report = report_of(evaluation);

@@ -16,7 +16,7 @@
 namespace {
 
 using emax::app::Device;
-using emax::app::Evaluation;
+using emax::app::EvaluationResults;
 using emax::app::Settings;
 using emax::app::TextWriter;
 using emax::test::evaluated;
@@ -31,8 +31,8 @@ struct Table {
   std::vector<std::vector<std::string>> cells;
 };
 
-Table table_of(void (*write)(const Evaluation&, TextWriter&) noexcept,
-               const Evaluation& evaluation) {
+Table table_of(void (*write)(const EvaluationResults&, TextWriter&) noexcept,
+               const EvaluationResults& evaluation) {
   std::istringstream text(text_of([&](TextWriter& out) { write(evaluation, out); }));
   Table table;
   std::getline(text, table.header);
@@ -59,7 +59,7 @@ void expect_columns(const Table& table, std::size_t columns) {
 }
 
 TEST(ReportCsv, FrequencyResponse) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   const Table table = table_of(emax::app::write_frequency_response_csv, evaluation);
   EXPECT_EQ(table.header,
             "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,"
@@ -91,7 +91,7 @@ TEST(ReportCsv, NoPointsNoFrequencyResponse) {
 }
 
 TEST(ReportCsv, ImpulseResponse) {
-  const Evaluation& evaluation = evaluated({kTable2.estimate, {}}, quick_settings());
+  const EvaluationResults& evaluation = evaluated({kTable2.estimate, {}}, quick_settings());
   const Table table = table_of(emax::app::write_impulse_response_csv, evaluation);
   EXPECT_EQ(table.header, "t_s,k,ka,kf");
   ASSERT_EQ(table.rows.size(), 1001U);
@@ -117,11 +117,11 @@ TEST(ReportCsv, ImpulseResponseGoesOnUntilItSettles) {
   EXPECT_NEAR(table.rows.back()[0], 1.453582e-3, 0.5e-9);
 }
 
-void expect_signal(const Evaluation& evaluation, std::size_t switches) {
+void expect_signal(const EvaluationResults& evaluation, std::size_t switches) {
   const Table table = table_of(emax::app::write_signal_csv, evaluation);
   EXPECT_EQ(table.header, "t_s,x_mps2,y_v");
   expect_columns(table, 3);
-  const double limit = evaluation.limit_mps2();
+  const double limit = evaluation.limit_mps2;
   double integral = 0.0;
   double largest = 0.0;
   std::size_t changes = 0;
@@ -147,7 +147,7 @@ void expect_signal(const Evaluation& evaluation, std::size_t switches) {
   EXPECT_EQ(table.rows.front()[0], 0.0);
   EXPECT_EQ(table.rows.front()[1], limit);
   EXPECT_EQ(table.rows.front()[2], 0.0);
-  EXPECT_EQ(table.rows.back()[0], evaluation.settings().duration_s);
+  EXPECT_EQ(table.rows.back()[0], evaluation.settings.duration_s);
   // Trapezoids of 1/250 period or less: (2 pi/250)^2/6 = 1e-4 at most, and E holds lower ones too.
   EXPECT_NEAR(integral, evaluation.energy_v2s(), 1e-4 * integral);
   EXPECT_GT(largest, 0.0);
@@ -157,7 +157,7 @@ TEST(ReportCsv, SignalOnGridPoints) {
   // The switches of the paper's method at 2 us fall on rows at 1 us: two rows for each, no third.
   Settings settings = quick_settings();
   settings.method = emax::Method::kPaper;
-  const Evaluation& evaluation = evaluated({kTable2.estimate, {}}, settings);
+  const EvaluationResults& evaluation = evaluated({kTable2.estimate, {}}, settings);
   expect_signal(evaluation, 4);
 }
 
@@ -190,7 +190,7 @@ TEST(ReportCsv, SignalHasRowsForEachOscillation) {
 TEST(ReportCsv, Trend) {
   Settings settings = quick_settings();
   settings.trend_count = 3;
-  const Evaluation& evaluation = evaluated({kTable2.estimate, {}}, settings);
+  const EvaluationResults& evaluation = evaluated({kTable2.estimate, {}}, settings);
   const Table table = table_of(emax::app::write_trend_csv, evaluation);
   EXPECT_EQ(table.header, "T_s,E,fit");
   ASSERT_EQ(table.rows.size(), 3U);
@@ -210,12 +210,12 @@ TEST(ReportCsv, Trend) {
 TEST(ReportCsv, Histogram) {
   Settings settings = quick_settings();
   settings.trials = 5000;
-  const Evaluation& evaluation = evaluated(kTable2, settings);
+  const EvaluationResults& evaluation = evaluated(kTable2, settings);
   const Table table = table_of(emax::app::write_histogram_csv, evaluation);
   EXPECT_EQ(table.header, "E_low,E_high,count");
   ASSERT_EQ(table.rows.size(), 64U);
   expect_columns(table, 3);
-  const emax::MonteCarloResult result = evaluation.monte_carlo().result();
+  const emax::MonteCarloResult result = evaluation.trials.result;
   EXPECT_EQ(table.rows.front()[0], result.minimum);
   EXPECT_EQ(table.rows.back()[1], result.maximum);
   double sum = 0.0;
@@ -237,8 +237,8 @@ TEST(ReportCsv, HistogramOfEqualEnergies) {
   // Beyond double: the smallest uncertainty there is moves no trial.
   Device device = {kTable2.estimate, {}};
   device.u.sensitivity = 1e-300;
-  const Evaluation& evaluation = evaluated(device, quick_settings());
-  ASSERT_TRUE(evaluation.has_monte_carlo());
+  const EvaluationResults& evaluation = evaluated(device, quick_settings());
+  ASSERT_TRUE(evaluation.has_monte_carlo);
   const Table table = table_of(emax::app::write_histogram_csv, evaluation);
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.rows[0][0], table.rows[0][1]);

@@ -14,7 +14,7 @@ namespace {
 using emax::Criterion;
 using emax::Method;
 using emax::MonteCarloResult;
-using emax::app::Evaluation;
+using emax::app::EvaluationResults;
 using emax::app::GainMode;
 using emax::app::Settings;
 using emax::app::TextWriter;
@@ -25,7 +25,7 @@ using emax::test::quick_settings;
 using emax::test::table1;
 using emax::test::text_of;
 
-JsonReader json_of(const Evaluation& evaluation, const char* name = nullptr) {
+JsonReader json_of(const EvaluationResults& evaluation, const char* name = nullptr) {
   return JsonReader(
       text_of([&](TextWriter& out) { emax::app::write_json(evaluation, {name}, out); }));
 }
@@ -41,7 +41,7 @@ TEST(JsonReader, SeesWhatIsWrong) {
 TEST(ReportJson, Table2) {
   Settings settings = quick_settings();
   settings.trend_count = 2;
-  const Evaluation& evaluation = evaluated(kTable2, settings);
+  const EvaluationResults& evaluation = evaluated(kTable2, settings);
   const JsonReader json = json_of(evaluation);
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("version"), "0.1.0");
@@ -79,16 +79,16 @@ TEST(ReportJson, Table2) {
   // a times the integral of |k|; five digits are known.
   EXPECT_NEAR(json.number("energy.absolute_error"), 3.7149, 0.5e-4);
   EXPECT_EQ(json.at("energy.switch_times[]"), "1");
-  EXPECT_EQ(json.number("energy.switch_times[0]"), evaluation.maximum().signal.times_s()[0]);
-  const MonteCarloResult result = evaluation.monte_carlo().result();
+  EXPECT_EQ(json.number("energy.switch_times[0]"), evaluation.maximum.signal.times_s()[0]);
+  const MonteCarloResult result = evaluation.trials.result;
   EXPECT_EQ(json.at("monte_carlo.trials"), "1000");
   EXPECT_EQ(json.at("monte_carlo.probability"), "0.95");
   EXPECT_EQ(json.at("monte_carlo.seed[]"), "4");
   EXPECT_EQ(json.at("monte_carlo.seed[3]"), "789012345");
   EXPECT_EQ(json.number("monte_carlo.E_max"), result.maximum);
-  EXPECT_EQ(json.number("monte_carlo.at.S"), evaluation.device_at_maximum().sensitivity);
-  EXPECT_EQ(json.number("monte_carlo.at.f0"), evaluation.device_at_maximum().natural_frequency_hz);
-  EXPECT_EQ(json.number("monte_carlo.at.beta"), evaluation.device_at_maximum().damping);
+  EXPECT_EQ(json.number("monte_carlo.at.S"), evaluation.device_at_maximum.sensitivity);
+  EXPECT_EQ(json.number("monte_carlo.at.f0"), evaluation.device_at_maximum.natural_frequency_hz);
+  EXPECT_EQ(json.number("monte_carlo.at.beta"), evaluation.device_at_maximum.damping);
   EXPECT_EQ(json.at("monte_carlo.trial"), std::to_string(result.trial_of_maximum));
   EXPECT_EQ(json.number("monte_carlo.mean"), result.mean);
   EXPECT_EQ(json.number("monte_carlo.u"), result.u);
@@ -108,7 +108,7 @@ TEST(ReportJson, Table2) {
 }
 
 TEST(ReportJson, Table1) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   const JsonReader json = json_of(evaluation, "djb.csv");
   ASSERT_TRUE(json.valid());
   EXPECT_EQ(json.at("model.source"), "points");
@@ -143,7 +143,7 @@ TEST(ReportJson, EnergyDifferenceBelowZero) {
 }
 
 TEST(ReportJson, NamesThatNeedEscaping) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   for (const std::string name : {"a\"b\\c\".csv", "tab\tline\nend\x1f\x7f", "", "/x/{}[],:"}) {
     const JsonReader json = json_of(evaluation, name.c_str());
     EXPECT_TRUE(json.valid()) << name;
@@ -152,7 +152,7 @@ TEST(ReportJson, NamesThatNeedEscaping) {
 }
 
 TEST(ReportJson, LabelsOnlyWhereThereAreAny) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   EXPECT_EQ(json_of(evaluation).at("labels.device"), "nothing at labels.device");
   emax::app::ReportContext context;
   context.labels.serial = "17";
@@ -168,7 +168,7 @@ TEST(ReportJson, LabelsOnlyWhereThereAreAny) {
 }
 
 TEST(ReportJson, LabelsAreCharacters) {
-  const Evaluation& evaluation = evaluated(table1(), quick_settings());
+  const EvaluationResults& evaluation = evaluated(table1(), quick_settings());
   emax::app::ReportContext context;
   context.labels.note = "\xC3\xA9 \xE2\x82\xAC \xF0\x9D\x84\x9E \xFF";
   const std::string json =

@@ -358,14 +358,13 @@ TEST(SavedIdentification, ComesBackAsItWas) {
 }
 
 TEST(SavedIdentification, IsTheOneOfTheEvaluation) {
-  emax::app::Evaluation& evaluation = emax::test::shared_evaluation();
-  emax::app::EvaluationWorkspace& workspace = emax::test::shared_workspace();
+  emax::app::EvaluationResults& evaluation = emax::test::shared_evaluation();
   const Settings settings = kDefaultSettings;
-  ASSERT_EQ(evaluation.start_from_points(emax::test::table1(), settings, workspace,
-                                         emax::app::Goal::kModel),
+  ASSERT_EQ(emax::test::run_on(evaluation)
+                .start_from_points(emax::test::table1(), settings, emax::app::Goal::kModel),
             Status::kOk);
   emax::test::finish(evaluation);
-  const emax::WlspFit& fit = evaluation.fit().result();
+  const emax::WlspFit& fit = evaluation.fit.result();
   ASSERT_EQ(fit.status, Status::kOk);
   Identification found;
   ASSERT_EQ(decode(encoded(identification_of(evaluation)), found), Status::kOk);
@@ -375,8 +374,8 @@ TEST(SavedIdentification, IsTheOneOfTheEvaluation) {
   EXPECT_EQ(found.covariance[2][1], fit.covariance[2][1]);
   EXPECT_EQ(found.chi2, fit.chi2);
   EXPECT_EQ(found.dof, 81U);
-  ASSERT_EQ(evaluation.start_from_model(emax::test::kTable2, settings, workspace,
-                                        emax::app::Goal::kModel),
+  ASSERT_EQ(emax::test::run_on(evaluation)
+                .start_from_model(emax::test::kTable2, settings, emax::app::Goal::kModel),
             Status::kOk);
   emax::test::finish(evaluation);
   ASSERT_EQ(decode(encoded(identification_of(evaluation)), found), Status::kOk);

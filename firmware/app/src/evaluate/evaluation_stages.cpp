@@ -1,6 +1,9 @@
 // The stages of the job, and the slices that each of them is cut into.
 #include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_workspace.hpp"
 #include "emax/base/elementary.hpp"
+
+#include "evaluation_checks.hpp"
 
 namespace emax::app {
 namespace {
@@ -12,47 +15,51 @@ constexpr std::uint64_t kFitDrawsOffset = std::uint64_t{1} << 60U;
 constexpr std::size_t kWorkPerStep = 1024;
 constexpr std::size_t kWorkOfStoredValue = 2;
 
-constexpr char kTrialsFailed[] =
-    "The energies of the trials cannot be summed up; check the units of the parameters.";
-
 }  // namespace
 
-void Evaluation::step(EvaluationWorkspace& workspace) noexcept {
-  const Stage before = stage_;
-  step_stage(workspace);
-  if (stage_ == before) {
-    progress_ = progress_of(workspace);
+void Evaluation::step() noexcept {
+  const Stage before = results_.stage;
+  step_stage();
+  if (results_.stage == before) {
+    work_.progress_ = progress_of_stage();
   }
 }
 
-void Evaluation::step_stage(EvaluationWorkspace& workspace) noexcept {
-  switch (stage_) {
+double Evaluation::progress() const noexcept {
+  if (results_.stage == Stage::kIdle || done()) {
+    return results_.stage == Stage::kDone ? 1.0 : 0.0;
+  }
+  return work_.progress_;
+}
+
+void Evaluation::step_stage() noexcept {
+  switch (results_.stage) {
     case Stage::kModel:
-      step_model(workspace);
+      step_model();
       return;
     case Stage::kFitDraws:
-      step_fit_draws(workspace);
+      step_fit_draws();
       return;
     case Stage::kEnergy:
-      step_energy(workspace);
+      step_energy();
       return;
     case Stage::kBound:
-      step_bound(workspace);
+      step_bound();
       return;
     case Stage::kPrediction:
-      step_prediction(workspace);
+      step_prediction();
       return;
     case Stage::kAdaptive:
-      step_adaptive(workspace);
+      step_adaptive();
       return;
     case Stage::kMonteCarlo:
-      step_monte_carlo(workspace);
+      step_monte_carlo();
       return;
     case Stage::kGuard:
-      step_guard(workspace);
+      step_guard();
       return;
     case Stage::kTrend:
-      step_trend(workspace);
+      step_trend();
       return;
     case Stage::kIdle:
     case Stage::kDone:
@@ -61,36 +68,36 @@ void Evaluation::step_stage(EvaluationWorkspace& workspace) noexcept {
   }
 }
 
-double Evaluation::progress_of(const EvaluationWorkspace& workspace) const noexcept {
-  switch (stage_) {
+double Evaluation::progress_of_stage() const noexcept {
+  switch (results_.stage) {
     case Stage::kFitDraws:
-      return static_cast<double>(draws_.made()) / kFitDraws;
+      return static_cast<double>(work_.draws_.made()) / kFitDraws;
     case Stage::kEnergy:
-      return workspace.search_.progress();
+      return work_.search_.progress();
     case Stage::kBound:
-      return workspace.part_.bound.bound.progress();
+      return work_.part_.bound.bound.progress();
     case Stage::kAdaptive:
-      return adaptive_progress(workspace.part_.trial.adaptive);
+      return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
       // With a store that holds all trials only the first pass takes time.
-      return store_.size() < monte_carlo_trials_
-                 ? workspace.part_.trial.monte_carlo.progress()
-                 : static_cast<double>(stored_) / static_cast<double>(monte_carlo_trials_);
+      return work_.store_.size() < work_.trials_
+                 ? work_.part_.trial.monte_carlo.progress()
+                 : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
     case Stage::kGuard:
-      return guard_.progress();
+      return work_.guard_.progress();
     case Stage::kTrend: {
-      const double running = trend_search_runs_ ? workspace.search_.progress() : 0.0;
-      return (static_cast<double>(trend_done_) + running) /
-             static_cast<double>(settings_.trend_count);
+      const double running = work_.trend_search_runs_ ? work_.search_.progress() : 0.0;
+      return (static_cast<double>(results_.trend_count) + running) /
+             static_cast<double>(results_.settings.trend_count);
     }
     case Stage::kIdle:
     case Stage::kModel:
     case Stage::kPrediction:
     case Stage::kDone:
     case Stage::kFailed:
-      return progress_;
+      return work_.progress_;
   }
-  return progress_;
+  return work_.progress_;
 }
 
 // The scatter of a mean over blocks falls with the root of their number: that says how many it
@@ -109,174 +116,194 @@ double Evaluation::adaptive_progress(const AdaptiveTrials& adaptive) const noexc
   return ratio > 1.0 ? 1.0 / (ratio * ratio) : 1.0;
 }
 
-void Evaluation::begin_model(EvaluationWorkspace& workspace) noexcept {
-  auto* const part = new (&workspace.part_.model) EvaluationWorkspace::ModelPart;
-  part->peak.start(model_);
-  has_absolute_error_ = part->absolute_error.start(model_, settings_.duration_s) == Status::kOk;
-  stage_ = Stage::kModel;
+void Evaluation::begin_model() noexcept {
+  auto* const part = new (&work_.part_.model) EvaluationWorkspace::ModelPart;
+  part->peak.start(results_.model);
+  results_.has_absolute_error =
+      part->absolute_error.start(results_.model, results_.settings.duration_s) == Status::kOk;
+  results_.stage = Stage::kModel;
 }
 
-void Evaluation::step_model(EvaluationWorkspace& workspace) noexcept {
-  EvaluationWorkspace::ModelPart& part = workspace.part_.model;
+void Evaluation::step_model() noexcept {
+  EvaluationWorkspace::ModelPart& part = work_.part_.model;
   if (!part.peak.done()) {
-    part.peak.step(model_);
+    part.peak.step(results_.model);
     if (part.peak.done()) {
-      peak_ = part.peak.result();
-      part.settling.start(model_, kSettled * abs(peak_.value));
+      results_.peak = part.peak.result();
+      part.settling.start(results_.model, kSettled * abs(results_.peak.value));
     }
     return;
   }
   if (!part.settling.done()) {
-    part.settling.step(model_);
+    part.settling.step(results_.model);
     return;
   }
   if (!part.absolute_error.done()) {
-    part.absolute_error.step(model_);
+    part.absolute_error.step(results_.model);
     return;
   }
-  settling_ = part.settling.result();
-  absolute_error_ = part.absolute_error.value();
-  has_model_ = true;
-  go_on(workspace);
+  results_.settling_time = part.settling.result();
+  results_.absolute_error_v = results_.limit_mps2 * part.absolute_error.value();
+  results_.has_model = true;
+  go_on();
+}
+
+WichmannHill Evaluation::seeded_generator() const noexcept {
+  WichmannHill generator;
+  // `check()` has seen the seed.
+  (void)generator.seed(results_.settings.generator, results_.settings.seed);
+  return generator;
 }
 
 void Evaluation::begin_fit_draws() noexcept {
   WichmannHill generator = seeded_generator();
   generator.jump(kFitDrawsOffset);
-  const Status status = draws_.start(fit_, kFitDraws, generator);
+  const Status status = work_.draws_.start(results_.fit, kFitDraws, generator);
   if (status != Status::kOk) {
-    (void)fail(status, Stage::kFitDraws, explain(status));
+    (void)fail({status, Stage::kFitDraws, explain(status)});
     return;
   }
-  stage_ = Stage::kFitDraws;
+  results_.stage = Stage::kFitDraws;
 }
 
-void Evaluation::step_fit_draws(EvaluationWorkspace& workspace) noexcept {
-  draws_.step(fit_, kDrawsPerStep);
-  if (draws_.done()) {
-    has_fit_draws_ = true;
-    go_on(workspace);
+void Evaluation::step_fit_draws() noexcept {
+  WlspDraws& draws = work_.draws_;
+  draws.step(results_.fit, kDrawsPerStep);
+  if (draws.done()) {
+    results_.fit_draws = draws.result();
+    results_.has_fit_draws = true;
+    go_on();
   }
 }
 
-void Evaluation::begin_energy(EvaluationWorkspace& workspace) noexcept {
-  const Status status =
-      workspace.search_.start(model_, search_settings(settings_, settings_.duration_s));
-  if (status != Status::kOk) {
-    fail_search(status, Stage::kEnergy, settings_.duration_s);
-    return;
+void Evaluation::begin_energy() noexcept {
+  if (begin_search(Stage::kEnergy, results_.settings.duration_s)) {
+    results_.stage = Stage::kEnergy;
   }
-  stage_ = Stage::kEnergy;
 }
 
-void Evaluation::step_energy(EvaluationWorkspace& workspace) noexcept {
-  if (has_energy_) {
-    go_on(workspace);
+/// @returns Whether the search has begun; else the evaluation has failed.
+bool Evaluation::begin_search(Stage stage, double duration_s) noexcept {
+  return is_well(
+      work_.search_.start(results_.model, search_settings(results_.settings, duration_s)), stage,
+      duration_s);
+}
+
+bool Evaluation::is_well(Status of_search, Stage stage, double duration_s) noexcept {
+  if (of_search != Status::kOk) {
+    (void)fail(failure_of_search(of_search, results_.settings.method, stage, duration_s));
+  }
+  return of_search == Status::kOk;
+}
+
+void Evaluation::step_energy() noexcept {
+  if (results_.has_energy) {
+    go_on();
     return;
   }
-  EnergySearch& search = workspace.search_;
-  const bool is_paper = settings_.method == Method::kPaper;
-  const Status status =
-      search.step(model_, workspace.grid_, is_paper ? Span<double>(trace_) : Span<double>());
-  if (status != Status::kOk) {
-    fail_search(status, Stage::kEnergy, settings_.duration_s);
+  EnergySearch& search = work_.search_;
+  const Span<double> all(results_.trace_v2s);
+  const Span<double> trace = results_.settings.method == Method::kPaper ? all : Span<double>();
+  const Status status = search.step(results_.model, work_.grid_, trace);
+  if (!is_well(status, Stage::kEnergy, results_.settings.duration_s) || !search.done()) {
     return;
   }
-  if (!search.done()) {
-    return;
+  results_.maximum = search.result();
+  results_.trace_count = search.trace_count();
+  for (double& energy : all.first(results_.trace_count)) {
+    energy = results_.a2() * energy;
   }
-  maximum_ = search.result();
-  trace_count_ = search.trace_count();
-  has_energy_ = true;  // What comes next begins with a step of its own.
+  results_.has_energy = true;  // What comes next begins with a step of its own.
 }
 
 // A device and time for which no bound passes its check, or for which its grid would be too large,
 // are reported without one.
-void Evaluation::begin_bound(EvaluationWorkspace& workspace) noexcept {
-  auto* const part = new (&workspace.part_.bound) EvaluationWorkspace::BoundPart;
-  if (part->bound.start(model_, settings_.duration_s, workspace.grid_) != Status::kOk) {
-    is_bound_done_ = true;  // The next step goes on: from here it would be a recursion.
+void Evaluation::begin_bound() noexcept {
+  auto* const part = new (&work_.part_.bound) EvaluationWorkspace::BoundPart;
+  if (part->bound.start(results_.model, results_.settings.duration_s, work_.grid_) != Status::kOk) {
+    results_.is_bound_done = true;  // The next step goes on: from here it would be a recursion.
   }
-  stage_ = Stage::kBound;
+  results_.stage = Stage::kBound;
 }
 
-void Evaluation::step_bound(EvaluationWorkspace& workspace) noexcept {
-  if (is_bound_done_) {
-    go_on(workspace);
+void Evaluation::step_bound() noexcept {
+  if (results_.is_bound_done) {
+    go_on();
     return;
   }
-  EnergyBound& bound = workspace.part_.bound.bound;
-  const Status status = bound.step(model_, workspace.grid_);
+  EnergyBound& bound = work_.part_.bound.bound;
+  const Status status = bound.step(results_.model, work_.grid_);
   if (status == Status::kOk && !bound.done()) {
     return;
   }
-  bound_ = bound.bound();
-  has_bound_ = status == Status::kOk;
-  is_bound_done_ = true;
-  go_on(workspace);
+  results_.bound_v2s = results_.a2() * bound.bound();
+  results_.has_bound = status == Status::kOk;
+  results_.is_bound_done = true;
+  go_on();
 }
 
-void Evaluation::begin_trials(EvaluationWorkspace& workspace) noexcept {
-  const ParameterBox& u = device_.u;
+void Evaluation::begin_trials() noexcept {
+  const Settings& settings = results_.settings;
+  const ParameterBox& u = results_.device.u;
   TrialSettings trial_settings;
-  const double scale = trial_scale();
-  trial_settings.distribution = settings_.distribution;
+  const double scale = results_.trial_scale();
+  trial_settings.distribution = settings.distribution;
   trial_settings.box = {scale * u.sensitivity, scale * u.natural_frequency_hz, scale * u.damping};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      trial_settings.covariance[i][j] = scale * scale * covariance(i, j);
+      trial_settings.covariance[i][j] = scale * scale * results_.covariance(i, j);
     }
   }
   trial_settings.generator = seeded_generator();
-  trial_settings.gain_follows = settings_.gain_mode == GainMode::kTrack;
-  trial_settings.search = search_settings(settings_, settings_.duration_s);
-  auto* const part = new (&workspace.part_.trial) EvaluationWorkspace::TrialPart;
-  const Status status = part->trials.start(model_, maximum_, trial_settings);
+  trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
+  trial_settings.search = search_settings(settings, settings.duration_s);
+  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
+  const Status status = part->trials.start(results_.model, results_.maximum, trial_settings);
   if (status != Status::kOk) {
-    (void)fail(status, Stage::kMonteCarlo, width_reason(settings_.distribution));
+    (void)fail(failure_of_width(status, settings.distribution));
     return;
   }
-  workspace.grid_.share_with_store();
-  stage_ = Stage::kPrediction;
+  work_.grid_.share_with_store();
+  results_.stage = Stage::kPrediction;
 }
 
-void Evaluation::step_prediction(EvaluationWorkspace& workspace) noexcept {
-  EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
+void Evaluation::step_prediction() noexcept {
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   if (!part.trials.ready()) {
-    part.trials.prepare(maximum_, workspace.grid_);
+    part.trials.prepare(results_.maximum, work_.grid_);
     return;
   }
-  if (!settings_.adaptive) {
-    begin_monte_carlo(settings_.trials, workspace);
+  if (!results_.settings.adaptive) {
+    begin_monte_carlo(results_.settings.trials);
     return;
   }
   const Status status =
-      part.adaptive.start(part.monte_carlo, workspace.grid_.store(), settings_.probability);
+      part.adaptive.start(part.monte_carlo, work_.grid_.store(), results_.settings.probability);
   if (status != Status::kOk) {
-    (void)fail(status, Stage::kAdaptive, explain(status));
+    (void)fail({status, Stage::kAdaptive, explain(status)});
     return;
   }
-  progress_ = 0.0;
-  stage_ = Stage::kAdaptive;
+  work_.progress_ = 0.0;
+  results_.stage = Stage::kAdaptive;
 }
 
 /// A step of a trial. @returns Whether its energy is there.
-bool Evaluation::advance_trial(std::uint32_t trial, EvaluationWorkspace& workspace) noexcept {
-  EnergyTrials& trials = workspace.part_.trial.trials;
-  if (trial_runs_) {
-    trials.step(workspace.grid_);
+bool Evaluation::advance_trial(std::uint32_t trial) noexcept {
+  EnergyTrials& trials = work_.part_.trial.trials;
+  if (work_.trial_runs_) {
+    trials.step(work_.grid_);
   } else {
-    trials.begin(trials.device(trial), maximum_, workspace.grid_);
+    trials.begin(trials.device(trial), results_.maximum, work_.grid_);
   }
-  trial_runs_ = !trials.done();
+  work_.trial_runs_ = !trials.done();
   return trials.done();
 }
 
-void Evaluation::run_slice(EvaluationWorkspace& workspace) noexcept {
-  EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
-  MonteCarloStore& store = workspace.grid_.store();
-  const bool adapts = stage_ == Stage::kAdaptive;
-  const std::size_t work_of_trial = part.trials.work(maximum_);
+void Evaluation::run_slice() noexcept {
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  MonteCarloStore& store = work_.grid_.store();
+  const bool adapts = results_.stage == Stage::kAdaptive;
+  const std::size_t work_of_trial = part.trials.work(results_.maximum);
   for (std::size_t work = 0; work < kWorkPerStep;) {
     if (adapts ? part.adaptive.done() : part.monte_carlo.done()) {
       return;
@@ -284,18 +311,18 @@ void Evaluation::run_slice(EvaluationWorkspace& workspace) noexcept {
     const std::uint32_t trial =
         adapts ? part.adaptive.next_trial(part.monte_carlo) : part.monte_carlo.next_trial();
     double value = 0.0;
-    if (trial < stored_) {
-      value = store_[trial];
+    if (trial < work_.stored_) {
+      value = work_.store_[trial];
       work += kWorkOfStoredValue;
     } else {
       work += work_of_trial;
-      if (!advance_trial(trial, workspace)) {
+      if (!advance_trial(trial)) {
         continue;
       }
-      value = a2() * part.trials.energy();
-      if (trial == stored_ && trial < store_.size()) {
-        store_[trial] = value;
-        ++stored_;
+      value = results_.a2() * part.trials.energy();
+      if (trial == work_.stored_ && trial < work_.store_.size()) {
+        work_.store_[trial] = value;
+        ++work_.stored_;
       }
     }
     if (adapts) {
@@ -306,112 +333,106 @@ void Evaluation::run_slice(EvaluationWorkspace& workspace) noexcept {
   }
 }
 
-void Evaluation::step_adaptive(EvaluationWorkspace& workspace) noexcept {
-  run_slice(workspace);
-  const AdaptiveTrials& adaptive = workspace.part_.trial.adaptive;
+void Evaluation::step_adaptive() noexcept {
+  run_slice();
+  const AdaptiveTrials& adaptive = work_.part_.trial.adaptive;
   if (!adaptive.done()) {
     return;
   }
-  adaptive_result_ = adaptive.result();
-  if (adaptive_result_.status != Status::kOk) {
-    (void)fail(adaptive_result_.status, Stage::kAdaptive, kTrialsFailed);
+  results_.adaptive = adaptive.result();
+  if (results_.adaptive.status != Status::kOk) {
+    (void)fail(failure_of_trials(results_.adaptive.status, Stage::kAdaptive));
     return;
   }
-  begin_monte_carlo(adaptive_result_.trials, workspace);
+  begin_monte_carlo(results_.adaptive.trials);
 }
 
-void Evaluation::begin_monte_carlo(std::uint32_t trials, EvaluationWorkspace& workspace) noexcept {
-  const Status status = workspace.part_.trial.monte_carlo.start(trials, settings_.probability,
-                                                                workspace.grid_.store());
+void Evaluation::begin_monte_carlo(std::uint32_t trials) noexcept {
+  const Status status = work_.part_.trial.monte_carlo.start(trials, results_.settings.probability,
+                                                            work_.grid_.store());
   if (status != Status::kOk) {
-    (void)fail(status, Stage::kMonteCarlo, explain(status));
+    (void)fail({status, Stage::kMonteCarlo, explain(status)});
     return;
   }
-  monte_carlo_trials_ = trials;
-  progress_ = 0.0;
-  stage_ = Stage::kMonteCarlo;
+  work_.trials_ = trials;
+  work_.progress_ = 0.0;
+  results_.stage = Stage::kMonteCarlo;
 }
 
-void Evaluation::step_monte_carlo(EvaluationWorkspace& workspace) noexcept {
-  run_slice(workspace);
-  EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
+void Evaluation::step_monte_carlo() noexcept {
+  run_slice();
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   if (!part.monte_carlo.done()) {
     return;
   }
-  monte_carlo_.take(part.monte_carlo, workspace.grid_.store());
-  const MonteCarloResult& result = monte_carlo_.result();
+  results_.trials.take(part.monte_carlo, work_.grid_.store());
+  const MonteCarloResult& result = results_.trials.result;
   if (result.status != Status::kOk) {
-    (void)fail(result.status, Stage::kMonteCarlo, kTrialsFailed);
+    (void)fail(failure_of_trials(result.status, Stage::kMonteCarlo));
     return;
   }
-  device_at_maximum_ = part.trials.device(result.trial_of_maximum);
-  if (settings_.method == Method::kPaper) {
-    has_monte_carlo_ = true;
-    go_on(workspace);
+  results_.device_at_maximum = part.trials.device(result.trial_of_maximum);
+  if (results_.settings.method == Method::kPaper) {
+    results_.has_monte_carlo = true;
+    go_on();
     return;
   }
-  guard_.start(monte_carlo_trials_, result.trial_of_maximum);
-  progress_ = 0.0;
-  stage_ = Stage::kGuard;
+  work_.guard_.start(work_.trials_, result.trial_of_maximum);
+  work_.progress_ = 0.0;
+  results_.stage = Stage::kGuard;
 }
 
-void Evaluation::step_guard(EvaluationWorkspace& workspace) noexcept {
-  (void)guard_.step(workspace.part_.trial.trials, maximum_, workspace.search_,
-                    workspace.grid_);  // A search that fails counts as disagreement.
-  if (guard_.done()) {
-    has_monte_carlo_ = true;
-    go_on(workspace);
+void Evaluation::step_guard() noexcept {
+  EnergyGuard& guard = work_.guard_;
+  (void)guard.step(work_.part_.trial.trials, results_.maximum, work_.search_,
+                   work_.grid_);  // A search that fails counts as disagreement.
+  if (guard.done()) {
+    results_.guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
+    results_.has_monte_carlo = true;
+    go_on();
   }
 }
 
-void Evaluation::step_trend(EvaluationWorkspace& workspace) noexcept {
-  const double duration_s = settings_.trend_s[trend_done_];
-  if (!trend_search_runs_) {
-    if (duration_s == settings_.duration_s) {
-      add_trend_point(maximum_.energy);
+void Evaluation::step_trend() noexcept {
+  const double duration_s = results_.settings.trend_s[results_.trend_count];
+  if (!work_.trend_search_runs_) {
+    if (duration_s == results_.settings.duration_s) {
+      add_trend_point(results_.energy_v2s());
       return;
     }
-    const Status status = workspace.search_.start(model_, search_settings(settings_, duration_s));
-    if (status != Status::kOk) {
-      fail_search(status, Stage::kTrend, duration_s);
-      return;
-    }
-    trend_search_runs_ = true;
+    work_.trend_search_runs_ = begin_search(Stage::kTrend, duration_s);
     return;
   }
-  const Status status = workspace.search_.step(model_, workspace.grid_);
-  if (status != Status::kOk) {
-    fail_search(status, Stage::kTrend, duration_s);
-    return;
-  }
-  if (workspace.search_.done()) {
-    trend_search_runs_ = false;
-    add_trend_point(workspace.search_.result().energy);
+  EnergySearch& search = work_.search_;
+  const Status status = search.step(results_.model, work_.grid_);
+  if (is_well(status, Stage::kTrend, duration_s) && search.done()) {
+    work_.trend_search_runs_ = false;
+    add_trend_point(results_.a2() * search.result().energy);
   }
 }
 
-void Evaluation::add_trend_point(double energy) noexcept {
-  trend_points_[trend_done_] = {settings_.trend_s[trend_done_], energy};
-  ++trend_done_;
-  if (trend_done_ == settings_.trend_count) {
+void Evaluation::add_trend_point(double energy_v2s) noexcept {
+  const Settings& settings = results_.settings;
+  results_.trend_table[results_.trend_count] = {settings.trend_s[results_.trend_count], energy_v2s};
+  ++results_.trend_count;
+  if (results_.trend_count == settings.trend_count) {
     end_trend();
   }
 }
 
 void Evaluation::end_trend() noexcept {
   double energy_v2s[kMaxTrendPoints];
-  for (std::size_t i = 0; i < trend_done_; ++i) {
-    energy_v2s[i] = a2() * trend_points_[i].energy;
+  for (std::size_t i = 0; i < results_.trend_count; ++i) {
+    energy_v2s[i] = results_.trend_table[i].energy_v2s;
   }
-  const Span<const double> times_s(settings_.trend_s.data(), trend_done_);
-  trend_ = linear_trend(times_s, Span<const double>(energy_v2s, trend_done_));
-  if (trend_.status != Status::kOk) {
-    (void)fail(trend_.status, Stage::kTrend, explain(trend_.status));
+  const Span<const double> times_s(results_.settings.trend_s.data(), results_.trend_count);
+  results_.trend = linear_trend(times_s, Span<const double>(energy_v2s, results_.trend_count));
+  if (results_.trend.status != Status::kOk) {
+    (void)fail({results_.trend.status, Stage::kTrend, explain(results_.trend.status)});
     return;
   }
-  has_trend_ = true;
-  stage_ = Stage::kDone;
-  progress_ = 1.0;
+  results_.has_trend = true;
+  results_.stage = Stage::kDone;
 }
 
 }  // namespace emax::app

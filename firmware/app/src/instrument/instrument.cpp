@@ -42,7 +42,7 @@ void Instrument::follow_peer() noexcept {
   if (was_connected_ && !is_connected) {
     session_.clear();
     completes_operation_ = false;
-    if (job_ != Job::kNone && !is_background_) {
+    if (is_working() && !is_background_) {
       abort();
     }
   }
@@ -91,86 +91,88 @@ void Instrument::send() noexcept {
 void Instrument::reset() noexcept {
   completes_operation_ = false;  // Before the work ends, or it would be completed.
   abort();
-  origin_ = Origin::kNothing;
-  points_.clear();
-  points_origin_ = Origin::kNothing;
-  device_ = {};
-  has_identification_ = false;
-  invalidate(Change::kDevice);
+  sequencer_.reset();
+  change_device();
   reset_settings();
 }
+
+// Settings
 
 void Instrument::reset_settings() noexcept {
   settings_ = kDefaultSettings;
   sweep_settings_ = default_sweep();
-  invalidate(Change::kEnergy);
-  seed_generator();
+  restart_random();
 }
 
 SweepSettings Instrument::default_sweep() const noexcept {
   return board_.bench != nullptr ? *board_.bench : default_sweep_settings();
 }
 
-void Instrument::seed_generator() noexcept {
+void Instrument::restart_random() noexcept {
   (void)generator_.seed(settings_.generator, settings_.seed);  // `check()` has seen the seed.
 }
 
-Instrument::Refusal Instrument::conflict_with(Change change) const noexcept {
-  constexpr Refusal kSweepRuns = {scpi::ErrorCode::kSettingsConflict, "a sweep runs: ABOR or *WAI"};
-  constexpr Refusal kWorkRuns = {scpi::ErrorCode::kSettingsConflict,
-                                 "computing: ABOR or *WAI first"};
-  const bool uses_points = change == Change::kSweep || change == Change::kDevice;
-  if (job_ == Job::kSweep && uses_points) {
-    return kSweepRuns;
-  }
-  const bool is_computing = job_ == Job::kEvaluation || job_ == Job::kFixedPoint;
-  return is_computing && change != Change::kSweep ? kWorkRuns : Refusal{};
+ErrorWords Instrument::conflict_with(Part part) const noexcept {
+  return words_of({sequencer_.obstacle_to(part)}, sequencer_);
 }
 
-void Instrument::invalidate(Change change) noexcept {
-  if (change == Change::kPaper && settings_.method != Method::kPaper) {
-    return;
+ErrorWords Instrument::take(const Settings& settings) noexcept {
+  if (const ErrorWords words = conflict_with(Part::kSettings)) {
+    return words;
   }
-  switch (change) {
-    case Change::kSweep:
-      return;
-    case Change::kTrials:
-      are_trials_valid_ = false;
-      break;
-    case Change::kTrend:
-      is_trend_valid_ = false;
-      break;
-    case Change::kPaper:
-    case Change::kEnergy:
-    case Change::kDevice:
-      is_evaluation_valid_ = false;
-      are_trials_valid_ = false;
-      is_trend_valid_ = false;
-      break;
+  if (const ErrorWords words = words_of(check(settings))) {
+    return words;
   }
-  is_report_valid_ = false;
-  if (change == Change::kDevice) {
-    session_.status().questionable().set_condition(0);
+  const bool has_other_numbers =
+      settings.seed != settings_.seed || settings.generator != settings_.generator;
+  settings_ = settings;
+  if (has_other_numbers) {
+    restart_random();
   }
+  return {};
 }
 
-bool Instrument::has(Goal goal) const noexcept {
-  if (!is_evaluation_valid_) {
-    return false;
+ErrorWords Instrument::take(const SweepSettings& settings) noexcept {
+  if (const ErrorWords words = conflict_with(Part::kSweepSettings)) {
+    return words;
   }
-  switch (goal) {
-    case Goal::kModel:
-      return evaluation_.has_model();
-    case Goal::kEnergy:
-      return evaluation_.has_energy() && evaluation_.is_bound_done();
-    case Goal::kMonteCarlo:
-      return are_trials_valid_ && evaluation_.has_monte_carlo();
-    case Goal::kTrend:
-      return is_trend_valid_ && evaluation_.has_trend();
-    case Goal::kReport:
-      return is_report_valid_;
+  if (const ErrorWords words = words_of(check(settings, ports_.analog.format()))) {
+    return words;
   }
-  return false;
+  sweep_settings_ = settings;
+  return {};
 }
+
+// The device
+
+ErrorWords Instrument::take(const Device& device) noexcept {
+  const ErrorWords words = conflict_with(Part::kDevice);
+  if (!words) {
+    sequencer_.take(device);
+    change_device();
+  }
+  return words;
+}
+
+ErrorWords Instrument::take(const FrequencyResponse& points) noexcept {
+  const ErrorWords words = conflict_with(Part::kDevice);
+  if (!words) {
+    sequencer_.take(points);
+    is_fit_kept_ = false;
+    change_device();
+  }
+  return words;
+}
+
+ErrorWords Instrument::clear_points() noexcept {
+  const ErrorWords words = conflict_with(Part::kDevice);
+  if (!words && sequencer_.clear_points()) {
+    change_device();
+  }
+  return words;
+}
+
+// What was wrong with the device of before is no matter any more.
+void Instrument::change_device() noexcept { session_.status().questionable().set_condition(0); }
 
 }  // namespace emax::app

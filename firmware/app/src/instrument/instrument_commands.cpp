@@ -2,6 +2,7 @@
 #include "instrument_commands.hpp"
 
 #include "emax/app/base/version.hpp"
+#include "emax/app/instrument/self_test.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
 #include "emax/base/elementary.hpp"
 
@@ -14,32 +15,33 @@ constexpr double kPercent = 100.0;
 
 }  // namespace
 
+void InstrumentCommands::report(const ErrorWords& words, Call& call) noexcept {
+  if (words) {
+    call.fail(words.code, words.words, words.subject);
+  }
+}
+
 void InstrumentCommands::identify_instrument(Instrument& i, Call& call) noexcept {
-  scpi::Response& answer = call.answer();
-  answer.word("emax").word(i.board_.name).word(i.board_.serial).word(kVersion);
+  call.answer().word("emax").word(i.board().name).word(i.board().serial).word(kVersion);
 }
 
 void InstrumentCommands::reset(Instrument& i, Call& /*call*/) noexcept { i.reset(); }
 
 void InstrumentCommands::clear(Instrument& i, Call& call) noexcept {
   scpi::clear_status(call);
-  i.completes_operation_ = false;
+  i.forget_completion();
 }
 
 void InstrumentCommands::operation_complete(Instrument& i, Call& call) noexcept {
-  if (call.is_query()) {
-    if (i.is_working()) {
-      call.wait();
-      return;
-    }
-    call.answer().integer(1);
+  if (!call.is_query()) {
+    i.complete_operation();
     return;
   }
   if (i.is_working()) {
-    i.completes_operation_ = true;
+    call.wait();
     return;
   }
-  call.status().add_events(scpi::kOperationComplete);
+  call.answer().integer(1);
 }
 
 void InstrumentCommands::wait(Instrument& i, Call& call) noexcept {
@@ -49,8 +51,9 @@ void InstrumentCommands::wait(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
-  call.answer().integer(static_cast<std::int64_t>(floor(kPercent * i.progress())));
-  const char* name = i.stage_name();
+  const double percent = floor(kPercent * i.sequencer().progress());
+  call.answer().integer(static_cast<std::int64_t>(percent));
+  const char* name = i.sequencer().stage_name();
   std::size_t length = 0;
   while (name[length] != '\0') {
     ++length;
@@ -61,15 +64,7 @@ void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
 void InstrumentCommands::abort(Instrument& i, Call& /*call*/) noexcept { i.abort(); }
 
 void InstrumentCommands::initiate_sweep(Instrument& i, Call& call) noexcept {
-  if (i.is_working()) {
-    call.fail(ErrorCode::kInitIgnored, "running: ABOR or *WAI first");
-    return;
-  }
-  if (const Refusal refusal = i.begin_sweep()) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  i.is_background_ = true;
+  report(i.initiate_sweep(), call);
 }
 
 void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
@@ -77,7 +72,7 @@ void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
     call.wait();
     return;
   }
-  call.answer().integer(run_self_test(i.workspace_.self_test));
+  call.answer().integer(run_self_test(i.sequencer().borrow<SelfTestWorkspace>()));
 }
 
 namespace {
@@ -162,7 +157,7 @@ constexpr scpi::Command<Instrument> kEnergy[] = {
 constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
-    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report},
+    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report_text},
 
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},

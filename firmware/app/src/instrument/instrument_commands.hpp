@@ -11,17 +11,17 @@
 
 namespace emax::app {
 
-/// A friend of the instrument. Handlers take the instrument that they act on and the call.
+/// Handlers take the instrument that they act on and the call.
 struct InstrumentCommands {
   using Call = scpi::Call;
   using ErrorCode = scpi::ErrorCode;
   using NumberRule = scpi::NumberRule;
   using IntegerRule = scpi::IntegerRule;
-  using Change = Instrument::Change;
-  using Origin = Instrument::Origin;
-  using Refusal = Instrument::Refusal;
 
   // Settings
+
+  /// Hands what was refused over to the call.
+  static void report(const ErrorWords& words, Call& call) noexcept;
 
   /// Takes new settings over if they can be had together and nothing that runs needs the old ones.
   static void take(Instrument& i, Call& call, const Settings& next) noexcept;
@@ -68,26 +68,8 @@ struct InstrumentCommands {
 
   template <Goal kGoal>
   static void initiate(Instrument& i, Call& call) noexcept {
-    if (i.is_working()) {
-      call.fail(ErrorCode::kInitIgnored, "running: ABOR or *WAI first");
-      return;
-    }
-    if (i.has(kGoal)) {
-      return;
-    }
-    if (const Refusal refusal = i.begin_evaluation(kGoal)) {
-      call.fail(refusal.code, refusal.words);
-      return;
-    }
-    i.is_background_ = i.is_working();
+    report(i.initiate(kGoal), call);
   }
-
-  /// Sees to what a query needs: true once it is there. Otherwise the query waits or has failed.
-  static bool provide(Instrument& i, Call& call, Goal goal) noexcept;
-
-  /// Whether a query may begin its computation: nothing runs, and none that it has begun before has
-  /// come to a bad end.
-  static bool can_go_on(Instrument& i, Call& call) noexcept;
 
   // Points
 
@@ -103,16 +85,14 @@ struct InstrumentCommands {
 
   // Device
 
-  /// As `provide()`, for the fit: the device is then the one that the points give.
-  static bool provide_fit(Instrument& i, Call& call) noexcept;
-
   /// The identification that was kept over power off, as long as there are no points.
   static const Identification* kept(const Instrument& i) noexcept;
   static void identify(Instrument& i, Call& call) noexcept;
   static void answer_device(const Device& device, scpi::Response& out) noexcept;
   static void covariance(Instrument& i, Call& call) noexcept;
   static void model(Instrument& i, Call& call) noexcept;
-  static void take_device(Instrument& i, Call& call, const Device& device) noexcept;
+  /// @returns What is wrong with the device; null if it can be one.
+  static const char* problem_of(const Device& device) noexcept;
 
   // Energy
 
@@ -128,7 +108,7 @@ struct InstrumentCommands {
   static void monte_carlo(Instrument& i, Call& call) noexcept;
   static void trend(Instrument& i, Call& call) noexcept;
   static bool take_trend(Instrument& i, Call& call) noexcept;
-  static void report(Instrument& i, Call& call) noexcept;
+  static void report_text(Instrument& i, Call& call) noexcept;
 
   // Diagnosis
 

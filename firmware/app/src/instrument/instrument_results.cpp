@@ -27,56 +27,31 @@ constexpr const NumberRule* kPointRules[kPointFields] = {&kAnyFrequency, &kAnyNu
 constexpr const NumberRule* kDeviceRules[] = {&kAnyNumber, &kAnyFrequency, &kAnyNumber};
 constexpr NumberRule kAnyTime = {0.0, kMaxDuration_s, kNoDefault, scpi::kSecond};
 
+const EvaluationResults& results_of(const Instrument& i) noexcept {
+  return i.sequencer().evaluation();
+}
+
+/// A signal that was asked for.
+struct SignalWorkspace {
+  double times_s[kMaxSwitches];
+  SwitchingSignal signal;
+};
+
 }  // namespace
 
-bool InstrumentCommands::provide(Instrument& i, Call& call, Goal goal) noexcept {
-  if (i.has(goal)) {
-    return true;
-  }
-  if (!can_go_on(i, call)) {
-    return false;
-  }
-  if (const Refusal refusal = i.begin_evaluation(goal)) {
-    call.fail(refusal.code, refusal.words);
-    return false;
-  }
-  if (i.is_working()) {
-    call.wait();
-  }
-  return !i.is_working();
-}
-
-bool InstrumentCommands::can_go_on(Instrument& i, Call& call) noexcept {
-  if (call.stage() == Call::Stage::kStart) {
-    i.was_aborted_ = false;
-    i.is_query_job_ = false;
-  }
-  if (i.was_aborted_) {
-    call.fail(ErrorCode::kExecutionError, "aborted");
-    return false;
-  }
-  if (i.is_working()) {
-    call.wait();
-    return false;
-  }
-  if (i.is_query_job_ && i.failure_) {
-    call.fail(i.failure_.code, i.failure_.words);
-    return false;
-  }
-  i.is_query_job_ = true;
-  return true;
-}
-
 std::size_t InstrumentCommands::point_count(const Instrument& i) noexcept {
-  return i.points_origin_ == Origin::kSweep ? i.sweep_.points().size() : i.points_.size();
+  const Sequencer& work = i.sequencer();
+  return work.points_origin() == Origin::kSweep ? work.sweep().points().size()
+                                                : work.points().size();
 }
 
 void InstrumentCommands::answer_point(const Instrument& i, std::size_t index,
                                       scpi::Response& out) noexcept {
-  const bool is_swept = i.points_origin_ == Origin::kSweep;
+  const SweepResults& sweep = i.sequencer().sweep();
+  const bool is_swept = i.sequencer().points_origin() == Origin::kSweep;
   const ResponsePoint& point =
-      is_swept ? i.sweep_.points()[index].point : i.points_.points()[index];
-  const double common = is_swept ? i.sweep_.common().total * point.amplitude : 0.0;
+      is_swept ? sweep.points()[index].point : i.sequencer().points().points()[index];
+  const double common = is_swept ? sweep.common.total * point.amplitude : 0.0;
   out.number(point.frequency_hz).number(point.amplitude);
   out.number(point.phase_rad * kDegreesPerRadian);
   out.number(sqrt(point.u_amplitude * point.u_amplitude + common * common));
@@ -102,11 +77,12 @@ void InstrumentCommands::fetch(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kDevice)) {
-    call.fail(refusal.code, refusal.words);
+  if (const ErrorWords words = i.conflict_with(Part::kDevice)) {
+    report(words, call);
     return;
   }
-  if (i.points_origin_ == Origin::kSweep && i.points_.size() > 0) {
+  Sequencer& work = i.sequencer();
+  if (work.points_origin() == Origin::kSweep && work.points().size() > 0) {
     call.fail(ErrorCode::kSettingsConflict, "points of a sweep: TRAC:FRES:CLE first");
     return;
   }
@@ -114,8 +90,9 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
     call.fail(ErrorCode::kMissingParameter, "five numbers for each point");
     return;
   }
-  FrequencyResponse& grown = i.workspace_.table;
-  grown = i.points_;
+  // All of them or none.
+  FrequencyResponse& grown = work.borrow<FrequencyResponse>();
+  grown = work.points();
   while (call.has_more()) {
     double numbers[kPointFields] = {};
     for (std::size_t field = 0; field < kPointFields; ++field) {
@@ -128,12 +105,7 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
       return;
     }
   }
-  i.points_ = grown;
-  i.has_identification_ = false;
-  i.points_origin_ = Origin::kTable;
-  i.is_fit_kept_ = false;
-  i.origin_ = Origin::kTable;
-  i.invalidate(Change::kDevice);
+  report(i.take(grown), call);
 }
 
 const char* InstrumentCommands::add_point(FrequencyResponse& response,
@@ -161,37 +133,17 @@ const char* InstrumentCommands::add_point(FrequencyResponse& response,
 }
 
 void InstrumentCommands::clear_points(Instrument& i, Call& call) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kDevice)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  i.points_.clear();
-  i.points_origin_ = Origin::kNothing;
-  if (i.origin_ != Origin::kModel) {
-    i.origin_ = Origin::kNothing;
-    i.invalidate(Change::kDevice);
-  }
+  report(i.clear_points(), call);
 }
 
 void InstrumentCommands::count_points(Instrument& i, Call& call) noexcept {
   call.answer().integer(static_cast<std::int64_t>(point_count(i)));
 }
 
-bool InstrumentCommands::provide_fit(Instrument& i, Call& call) noexcept {
-  if (!i.is_working() && i.points_.size() == 0) {
-    call.fail(ErrorCode::kDataCorruptOrStale, "no points: INIT:SWE or TRAC:FRES:DATA");
-    return false;
-  }
-  if (!i.is_working() && i.origin_ == Origin::kModel) {
-    i.origin_ = i.points_origin_;
-    i.invalidate(Change::kDevice);
-  }
-  return provide(i, call, Goal::kModel);
-}
-
 const Identification* InstrumentCommands::kept(const Instrument& i) noexcept {
-  const bool is_fit = i.has_identification_ && i.identification_.source == Source::kPoints;
-  return is_fit && i.points_.size() == 0 ? &i.identification_ : nullptr;
+  const Identification* const kept = i.sequencer().kept_identification();
+  const bool is_fit = kept != nullptr && kept->source == Source::kPoints;
+  return is_fit && i.sequencer().points().size() == 0 ? kept : nullptr;
 }
 
 void InstrumentCommands::identify(Instrument& i, Call& call) noexcept {
@@ -200,11 +152,11 @@ void InstrumentCommands::identify(Instrument& i, Call& call) noexcept {
     call.answer().number(identification->chi2).integer(identification->dof);
     return;
   }
-  if (!provide_fit(i, call)) {
+  if (!i.provide_fit(call)) {
     return;
   }
-  const WlspFit& fit = i.evaluation_.fit().result();
-  answer_device(i.evaluation_.device(), call.answer());
+  const WlspFit& fit = results_of(i).fit.result();
+  answer_device(results_of(i).device, call.answer());
   call.answer().number(fit.chi2).integer(fit.dof);
 }
 
@@ -221,20 +173,20 @@ void InstrumentCommands::covariance(Instrument& i, Call& call) noexcept {
     }
     return;
   }
-  if (!provide_fit(i, call)) {
+  if (!i.provide_fit(call)) {
     return;
   }
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 3; ++column) {
-      call.answer().number(i.evaluation_.covariance(row, column));
+      call.answer().number(results_of(i).covariance(row, column));
     }
   }
 }
 
 void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
   if (call.is_query()) {
-    if (provide(i, call, Goal::kModel)) {
-      answer_device(i.evaluation_.device(), call.answer());
+    if (i.provide(call, Goal::kModel)) {
+      answer_device(results_of(i).device, call.answer());
     }
     return;
   }
@@ -252,110 +204,94 @@ void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
       return;
     }
   }
-  take_device(i, call, device);
+  if (const ErrorWords words = i.conflict_with(Part::kDevice)) {
+    report(words, call);
+    return;
+  }
+  if (const char* problem = problem_of(device)) {
+    call.fail(ErrorCode::kDataOutOfRange, problem);
+    return;
+  }
+  report(i.take(device), call);
 }
 
-void InstrumentCommands::take_device(Instrument& i, Call& call, const Device& device) noexcept {
-  if (const Refusal refusal = i.conflict_with(Change::kDevice)) {
-    call.fail(refusal.code, refusal.words);
-    return;
-  }
-  const Accelerometer& estimate = device.estimate;
+const char* InstrumentCommands::problem_of(const Device& device) noexcept {
   const ParameterBox& u = device.u;
-  if (validate(estimate) != Status::kOk) {
-    call.fail(ErrorCode::kDataOutOfRange, "S, f0 above 0, beta 0.0001 to below 1");
-    return;
+  if (validate(device.estimate) != Status::kOk) {
+    return "S, f0 above 0, beta 0.0001 to below 1";
   }
   if (!(u.sensitivity >= 0.0) || !(u.natural_frequency_hz >= 0.0) || !(u.damping >= 0.0)) {
-    call.fail(ErrorCode::kDataOutOfRange, "uncertainties must be 0 or more");
-    return;
+    return "uncertainties must be 0 or more";
   }
-  i.device_ = device;
-  i.has_identification_ = false;
-  i.origin_ = Origin::kModel;
-  i.invalidate(Change::kDevice);
+  return nullptr;
 }
 
 void InstrumentCommands::energy(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
-    call.answer().number(i.evaluation_.maximum().signal.times_s()[call.item()]);
+    call.answer().number(results_of(i).maximum.signal.times_s()[call.item()]);
     return;
   }
-  if (!provide(i, call, Goal::kEnergy)) {
+  if (!i.provide(call, Goal::kEnergy)) {
     return;
   }
-  const Evaluation& evaluation = i.evaluation_;
-  const std::size_t count = evaluation.maximum().signal.count();
+  const EvaluationResults& evaluation = results_of(i);
+  const std::size_t count = evaluation.maximum.signal.count();
   call.answer().number(evaluation.energy_v2s()).number(evaluation.xi());
-  call.answer().number(evaluation.has_bound() ? evaluation.bound_v2s() : kNoDefault);
+  call.answer().number(evaluation.has_bound ? evaluation.bound_v2s : kNoDefault);
   call.answer().integer(static_cast<std::int64_t>(count));
   call.answer_items(count);
 }
 
 void InstrumentCommands::evaluate(Instrument& i, Call& call) noexcept {
-  if (!provide(i, call, Goal::kModel)) {
+  if (!i.provide(call, Goal::kModel)) {
     return;
   }
   if (i.is_working()) {
     call.wait();
     return;
   }
-  Instrument::SignalWorkspace& work = i.workspace_.signal;
+  SignalWorkspace& work = i.sequencer().borrow<SignalWorkspace>();
   std::size_t count = 0;
   if (!call.numbers(kAnyTime, Span<double>(work.times_s), count)) {
     return;
   }
   work.signal = {};
   const Span<const double> times_s(work.times_s, count);
-  if (work.signal.set(times_s, i.settings_.duration_s) != Status::kOk) {
+  if (work.signal.set(times_s, i.settings().duration_s) != Status::kOk) {
     call.fail(ErrorCode::kDataOutOfRange, "times must ascend inside 0 to T");
     return;
   }
-  const double a = i.evaluation_.limit_mps2();
-  call.answer().number(a * a * emax::energy(i.evaluation_.model(), work.signal));
+  const double a = results_of(i).limit_mps2;
+  call.answer().number(a * a * emax::energy(results_of(i).model, work.signal));
 }
 
 void InstrumentCommands::fixed_point(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
-    call.answer().number(i.fixed_point_energy(call.item()));
+    call.answer().number(i.sequencer().fixed_point()->energy_v2s(call.item()));
     return;
   }
-  if (call.stage() == Call::Stage::kStart) {
-    i.is_fixed_point_ready_ = false;  // One that nobody fetched.
-  }
-  if (!provide(i, call, Goal::kModel)) {
+  if (!i.provide_fixed_point(call)) {
     return;
   }
-  if (!i.is_fixed_point_ready_) {
-    if (!can_go_on(i, call)) {
-      return;
-    }
-    if (const Refusal refusal = i.begin_fixed_point()) {
-      call.fail(refusal.code, refusal.words);
-      return;
-    }
-    call.wait();
-    return;
-  }
-  i.is_fixed_point_ready_ = false;
-  call.answer().integer(static_cast<std::int64_t>(i.iterations_));
-  call.answer_items(i.iterations_ + 1);
+  const std::size_t iterations = i.sequencer().fixed_point()->iterations();
+  call.answer().integer(static_cast<std::int64_t>(iterations));
+  call.answer_items(iterations + 1);
 }
 
 void InstrumentCommands::absolute_error(Instrument& i, Call& call) noexcept {
-  if (!provide(i, call, Goal::kModel)) {
+  if (!i.provide(call, Goal::kModel)) {
     return;
   }
-  if (!i.evaluation_.has_absolute_error()) {
+  if (!results_of(i).has_absolute_error) {
     call.fail(ErrorCode::kSettingsConflict, "k moves too often for so long a T: shorten it");
     return;
   }
-  call.answer().number(i.evaluation_.absolute_error_v());
+  call.answer().number(results_of(i).absolute_error_v);
 }
 
 void InstrumentCommands::settling_time(Instrument& i, Call& call) noexcept {
-  if (provide(i, call, Goal::kModel)) {
-    const SettlingTime settling = i.evaluation_.settling_time();
+  if (i.provide(call, Goal::kModel)) {
+    const SettlingTime& settling = results_of(i).settling_time;
     call.answer().number(settling.found ? settling.time_s
                                         : std::numeric_limits<double>::infinity());
   }
@@ -366,7 +302,7 @@ void InstrumentCommands::impulse_response(Instrument& i, Call& call) noexcept {
     answer_impulse(i, call);
     return;
   }
-  if (!provide(i, call, Goal::kModel)) {
+  if (!i.provide(call, Goal::kModel)) {
     return;
   }
   call.answer_items(call.count());
@@ -383,54 +319,53 @@ void InstrumentCommands::answer_impulse(Instrument& i, Call& call) noexcept {
       return;
     }
   }
-  call.answer().number(i.evaluation_.model().impulse_response(time_s));
+  call.answer().number(results_of(i).model.impulse_response(time_s));
 }
 
 void InstrumentCommands::monte_carlo(Instrument& i, Call& call) noexcept {
-  if (!provide(i, call, Goal::kMonteCarlo)) {
+  if (!i.provide(call, Goal::kMonteCarlo)) {
     return;
   }
-  const MonteCarloResult result = i.evaluation_.monte_carlo().result();
-  const Accelerometer& device = i.evaluation_.device_at_maximum();
+  const MonteCarloResult& result = results_of(i).trials.result;
+  const Accelerometer& device = results_of(i).device_at_maximum;
   scpi::Response& out = call.answer();
   out.integer(result.trials).number(result.maximum).number(device.sensitivity);
   out.number(device.natural_frequency_hz).number(device.damping);
   out.integer(result.trial_of_maximum).number(result.mean).number(result.u);
   out.number(result.symmetric.low).number(result.symmetric.high);
   out.number(result.shortest.low).number(result.shortest.high);
-  out.integer(i.evaluation_.guard().disagreements());
+  out.integer(results_of(i).guard.disagreements);
 }
 
 void InstrumentCommands::trend(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
-    const double a = i.evaluation_.limit_mps2();
-    call.answer().number(a * a * i.evaluation_.trend_points()[call.item()].energy);
+    call.answer().number(results_of(i).trend_points()[call.item()].energy_v2s);
     return;
   }
   if (call.stage() == Call::Stage::kStart && call.has_more() && !take_trend(i, call)) {
     return;
   }
-  if (!provide(i, call, Goal::kTrend)) {
+  if (!i.provide(call, Goal::kTrend)) {
     return;
   }
-  call.answer().number(i.evaluation_.trend().slope).number(i.evaluation_.trend().intercept);
-  call.answer_items(i.evaluation_.trend_points().size());
+  call.answer().number(results_of(i).trend.slope).number(results_of(i).trend.intercept);
+  call.answer_items(results_of(i).trend_points().size());
 }
 
 bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
-  Settings next = i.settings_;
+  Settings next = i.settings();
   next.trend_s = {};
   if (!call.numbers(kAnyTime, Span<double>(next.trend_s), next.trend_count)) {
     return false;
   }
-  if (next.trend_s != i.settings_.trend_s || next.trend_count != i.settings_.trend_count) {
+  if (next.trend_s != i.settings().trend_s || next.trend_count != i.settings().trend_count) {
     take(i, call, next);
   }
   return !call.failed();
 }
 
-void InstrumentCommands::report(Instrument& i, Call& call) noexcept {
-  if (!provide(i, call, Goal::kReport)) {
+void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
+  if (!i.provide(call, Goal::kReport)) {
     return;
   }
   if (i.is_working()) {
@@ -447,7 +382,7 @@ void InstrumentCommands::report(Instrument& i, Call& call) noexcept {
 
 void InstrumentCommands::random(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
-    call.answer().number(i.generator_.next());
+    call.answer().number(i.next_random());
     return;
   }
   std::int64_t count = 0;
@@ -457,7 +392,8 @@ void InstrumentCommands::random(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::memory(Instrument& i, Call& call) noexcept {
-  const MemoryUse use = i.board_.memory_use != nullptr ? i.board_.memory_use() : MemoryUse{};
+  const Board& board = i.board();
+  const MemoryUse use = board.memory_use != nullptr ? board.memory_use() : MemoryUse{};
   call.answer().integer(use.static_bytes).integer(use.stack_limit).integer(use.stack_used);
 }
 

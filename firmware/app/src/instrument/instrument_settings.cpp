@@ -163,53 +163,12 @@ template <typename Change>
 
 }  // namespace
 
-Instrument::Refusal Instrument::take(const Settings& next) noexcept {
-  if (const Refusal refusal = conflict_with(Change::kEnergy)) {
-    return refusal;
-  }
-  const SettingsError error = check(next);
-  if (error.setting != nullptr) {
-    return {scpi::ErrorCode::kSettingsConflict, error.expectation, error.setting};
-  }
-  const bool has_other_numbers = !is_same_random(next, settings_);
-  if (!is_same_energy(next, settings_)) {
-    invalidate(Change::kEnergy);
-  }
-  if (!is_same_trials(next, settings_)) {
-    invalidate(Change::kTrials);
-  }
-  if (!is_same_trend(next, settings_)) {
-    invalidate(Change::kTrend);
-  }
-  settings_ = next;
-  if (has_other_numbers) {
-    seed_generator();
-  }
-  return {};
-}
-
-Instrument::Refusal Instrument::take(const SweepSettings& next) noexcept {
-  if (const Refusal refusal = conflict_with(Change::kSweep)) {
-    return refusal;
-  }
-  const SettingsError error = check(next, ports_.analog.format());
-  if (error.setting != nullptr) {
-    return {scpi::ErrorCode::kSettingsConflict, error.expectation, error.setting};
-  }
-  sweep_settings_ = next;
-  return {};
-}
-
 void InstrumentCommands::take(Instrument& i, Call& call, const Settings& next) noexcept {
-  if (const Refusal refusal = i.take(next)) {
-    call.fail(refusal.code, refusal.words, refusal.subject);
-  }
+  report(i.take(next), call);
 }
 
 void InstrumentCommands::take(Instrument& i, Call& call, const SweepSettings& next) noexcept {
-  if (const Refusal refusal = i.take(next)) {
-    call.fail(refusal.code, refusal.words, refusal.subject);
-  }
+  report(i.take(next), call);
 }
 
 void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) noexcept {
@@ -259,7 +218,7 @@ void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
   }
   take(i, call, next);
   if (!call.failed()) {
-    i.seed_generator();
+    i.restart_random();
   }
 }
 
@@ -319,7 +278,7 @@ bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slo
   if (!call.integer({0, kSavedSlots - 1, 0}, number)) {
     return false;
   }
-  if (i.ports_.store == nullptr) {
+  if (!i.has_store()) {
     call.fail(ErrorCode::kMemoryError, "this board has no store");
     return false;
   }

@@ -1,5 +1,6 @@
 // What a sweep makes of its repeats: the level, the faults, the points.
 #include "emax/app/measure/sweep.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
 
@@ -40,135 +41,140 @@ Status cables_of(Complex ratio, Complex expected, Complex swapped) noexcept {
 
 }  // namespace
 
-double Sweep::acceleration_of(double reference_v, const SweepWorkspace& work) const noexcept {
-  return reference_v / settings_.reference_gain /
-         sensitivity_at(settings_.reference, work.target_.frequency_hz);
+/// What one repeat's fit says of one channel.
+struct Sweep::Reading {
+  SineFitResult fit;
+  double weak_v = 0.0;  // Below this it may be noise.
+  bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
+  bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
+};
+
+double Sweep::acceleration_of(double reference_v) const noexcept {
+  return reference_v / results_.settings.reference_gain /
+         sensitivity_at(results_.settings.reference, work_.target_.frequency_hz);
 }
 
-Sweep::Reading Sweep::reading_of(const SineFitResult& fit, const SilentChannel& silent,
-                                 const SweepWorkspace& work) noexcept {
-  const double samples = static_cast<double>(work.target_.repeat_frames);
+Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
+                                 const SilentChannel& silent) const noexcept {
+  const double samples = static_cast<double>(work_.target_.repeat_frames);
   Reading reading;
   reading.fit = fit;
   reading.weak_v =
       kWeakSigmas * silent.noise_v * sqrt(2.0 / samples) +
-      3.0 * silent.hum_in_fit_v(work.target_.frequency_hz, samples / work.format_.sample_rate_hz);
+      3.0 * silent.hum_in_fit_v(work_.target_.frequency_hz, samples / work_.format_.sample_rate_hz);
   return reading;
 }
 
-void Sweep::end_repeat(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  const Reading reference = reading_of(work.fit_.reference(), inputs_.silent_reference, work);
-  const Reading device = reading_of(work.fit_.device(), inputs_.silent_device, work);
-  if (work.repeats_.count == 0) {
-    judge_first(reference, device, stream, work);
-    if (done() || work.block_is_spent_) {
+void Sweep::end_repeat() noexcept {
+  const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
+  const Reading device = reading_of(work_.fit_.device(), results_.inputs.silent_device);
+  if (work_.repeats_.count == 0) {
+    judge_first(reference, device);
+    if (done() || work_.block_is_spent_) {
       return;
     }
-    work.first_reference_offset_v_ = reference.fit.offset_v;
-    work.first_device_offset_v_ = device.fit.offset_v;
+    work_.first_reference_offset_v_ = reference.fit.offset_v;
+    work_.first_device_offset_v_ = device.fit.offset_v;
   }
-  const Status status = disturbance_of(reference, device, work);
+  const Status status = disturbance_of(reference, device);
   if (status != Status::kOk) {
-    suspect(status, stream, work);
+    suspect(status);
     return;
   }
-  work.reference_rest2_ += reference.fit.residual_std_v * reference.fit.residual_std_v;
-  work.device_rest2_ += device.fit.residual_std_v * device.fit.residual_std_v;
+  work_.reference_rest2_ += reference.fit.residual_std_v * reference.fit.residual_std_v;
+  work_.device_rest2_ += device.fit.residual_std_v * device.fit.residual_std_v;
   // Both to the time of the first repeat's first sample.
-  const double turns = static_cast<double>(work.repeats_.count) *
-                       static_cast<double>(work.target_.repeat_frames) * work.target_.frequency_hz /
-                       work.format_.sample_rate_hz;
+  const double turns = static_cast<double>(work_.repeats_.count) *
+                       static_cast<double>(work_.target_.repeat_frames) *
+                       work_.target_.frequency_hz / work_.format_.sample_rate_hz;
   const SinCos back = sincos(kTwoPi * (turns - floor(turns)));
   const Complex turn = {back.cos, -back.sin};
-  work.repeats_.reference[work.repeats_.count] = turn * reference.fit.phasor();
-  work.repeats_.device[work.repeats_.count] = turn * device.fit.phasor();
-  ++work.repeats_.count;
-  if (work.repeats_.count < settings_.repeats) {
-    begin_repeat(work);
+  work_.repeats_.reference[work_.repeats_.count] = turn * reference.fit.phasor();
+  work_.repeats_.device[work_.repeats_.count] = turn * device.fit.phasor();
+  ++work_.repeats_.count;
+  if (work_.repeats_.count < results_.settings.repeats) {
+    begin_repeat();
     return;
   }
-  end_target(stream, work);
+  end_target();
 }
 
 // The first repeat after each change of the drive: is there a signal, and is the level right?
-void Sweep::judge_first(const Reading& reference, const Reading& device, hal::AnalogStream& stream,
-                        SweepWorkspace& work) noexcept {
+void Sweep::judge_first(const Reading& reference, const Reading& device) noexcept {
   if (reference.is_weak() || device.is_weak()) {
     if (reference.is_weak() && device.is_strong()) {
-      suspect(Status::kNoReference, stream, work);
+      suspect(Status::kNoReference);
     } else if (device.is_weak() && reference.is_strong()) {
-      suspect(Status::kNoDevice, stream, work);
+      suspect(Status::kNoDevice);
     } else {
-      raise_drive(stream, work);
+      raise_drive();
     }
     return;
   }
-  const double acceleration = acceleration_of(reference.fit.amplitude_v, work);
-  const double drive_v = work.drive_.amplitude_v();
-  work.target_.acceleration_mps2 = acceleration;
-  work.target_.is_close = true;
-  work.drive_per_acceleration_ = drive_v / acceleration;
-  const double aim = aim_mps2(work);
+  const double acceleration = acceleration_of(reference.fit.amplitude_v);
+  const double drive_v = work_.drive_.amplitude_v();
+  work_.target_.acceleration_mps2 = acceleration;
+  work_.target_.is_close = true;
+  work_.drive_per_acceleration_ = drive_v / acceleration;
+  const double aim = aim_mps2();
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
     return;
   }
-  const double most_v = work.drive_.max_amplitude_v(work.target_.frequency_hz);
-  const double needed_v = aim * work.drive_per_acceleration_;
-  ++work.target_.tries;
-  if (needed_v > most_v * (1.0 + kLevelTolerance) || work.target_.tries > kMaxTries) {
-    fail(Status::kLevelNotReached, stream, work);
+  const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
+  const double needed_v = aim * work_.drive_per_acceleration_;
+  ++work_.target_.tries;
+  if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
+    fail(Status::kLevelNotReached);
     return;
   }
   if (needed_v > most_v && drive_v >= most_v) {
     return;  // Within the tolerance at the largest drive.
   }
-  drive_to(needed_v < most_v ? needed_v : most_v, work);
+  drive_to(needed_v < most_v ? needed_v : most_v);
 }
 
-void Sweep::raise_drive(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  const double most_v = work.drive_.max_amplitude_v(work.target_.frequency_hz);
-  if (work.drive_.amplitude_v() >= most_v) {
-    fail(Status::kWeakSignal, stream, work);
+void Sweep::raise_drive() noexcept {
+  const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
+  if (work_.drive_.amplitude_v() >= most_v) {
+    fail(Status::kWeakSignal);
     return;
   }
-  const double raised_v = kRaise * work.drive_.amplitude_v();
-  drive_to(raised_v < most_v ? raised_v : most_v, work);
+  const double raised_v = kRaise * work_.drive_.amplitude_v();
+  drive_to(raised_v < most_v ? raised_v : most_v);
 }
 
 // By how much the offsets have moved apart. A slow swing of the shaker moves both, in the ratio of
 // low frequencies.
-double Sweep::offset_change_v(double reference_v, double device_v,
-                              const SweepWorkspace& work) const noexcept {
-  const double ratio = norm(check_before_) > 0.0
-                           ? magnitude(check_before_) / ratio_factor(work)
-                           : work.fit_.device().amplitude_v / work.fit_.reference().amplitude_v;
+double Sweep::offset_change_v(double reference_v, double device_v) const noexcept {
+  const double ratio = norm(results_.check_before) > 0.0
+                           ? magnitude(results_.check_before) / ratio_factor()
+                           : work_.fit_.device().amplitude_v / work_.fit_.reference().amplitude_v;
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 
-Status Sweep::disturbance_of(const Reading& reference, const Reading& device,
-                             const SweepWorkspace& work) const noexcept {
+Status Sweep::disturbance_of(const Reading& reference, const Reading& device) const noexcept {
   if (reference.is_weak()) {
     return device.is_weak() ? Status::kWeakSignal : Status::kNoReference;
   }
   if (device.is_weak()) {
     return Status::kNoDevice;
   }
-  const double full_scale_v = work.format_.input_full_scale_v;
-  const double within_v = offset_change_v(reference.fit.offset_v - work.first_reference_offset_v_,
-                                          device.fit.offset_v - work.first_device_offset_v_, work);
+  const double full_scale_v = work_.format_.input_full_scale_v;
+  const double within_v = offset_change_v(reference.fit.offset_v - work_.first_reference_offset_v_,
+                                          device.fit.offset_v - work_.first_device_offset_v_);
   const double since_silence_v =
-      offset_change_v(reference.fit.offset_v - inputs_.silent_reference.offset_v,
-                      device.fit.offset_v - inputs_.silent_device.offset_v, work);
+      offset_change_v(reference.fit.offset_v - results_.inputs.silent_reference.offset_v,
+                      device.fit.offset_v - results_.inputs.silent_device.offset_v);
   // After overrange the ratio is in doubt; it is judged before anything else.
-  if (!work.target_.was_overrange &&
+  if (!work_.target_.was_overrange &&
       (within_v > kWanderShare * full_scale_v || since_silence_v > kOffsetShare * full_scale_v)) {
     return Status::kDcDrift;
   }
-  const double samples = static_cast<double>(work.target_.repeat_frames);
+  const double samples = static_cast<double>(work_.target_.repeat_frames);
   const double distortion[] = {
-      distortion_of(reference.fit.residual_std_v, inputs_.silent_reference.noise_v,
+      distortion_of(reference.fit.residual_std_v, results_.inputs.silent_reference.noise_v,
                     reference.fit.amplitude_v, samples),
-      distortion_of(device.fit.residual_std_v, inputs_.silent_device.noise_v,
+      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v,
                     device.fit.amplitude_v, samples)};
   if (distortion[0] > kDistortedShare || distortion[1] > kDistortedShare) {
     return Status::kDistorted;
@@ -177,69 +183,69 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device,
 }
 
 // A fault that begins within a repeat looks like another one: the second look decides.
-void Sweep::suspect(Status status, hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  if (work.target_.was_suspect) {
-    fail(status, stream, work);
+void Sweep::suspect(Status status) noexcept {
+  if (work_.target_.was_suspect) {
+    fail(status);
     return;
   }
-  work.target_.was_suspect = true;
-  drive_to(work.drive_.amplitude_v(), work);
+  work_.target_.was_suspect = true;
+  drive_to(work_.drive_.amplitude_v());
 }
 
 // K over the ratio of the volts.
-double Sweep::ratio_factor(const SweepWorkspace& work) const noexcept {
-  return sensitivity_at(settings_.reference, work.target_.frequency_hz) * settings_.reference_gain /
-         settings_.device_gain;
+double Sweep::ratio_factor() const noexcept {
+  return sensitivity_at(results_.settings.reference, work_.target_.frequency_hz) *
+         results_.settings.reference_gain / results_.settings.device_gain;
 }
 
-Complex Sweep::ratio_of(const PointScatter& scatter, const SweepWorkspace& work) const noexcept {
+Complex Sweep::ratio_of(const PointScatter& scatter) const noexcept {
   // Sampled later, the device's channel is ahead by w skew.
-  const SinCos skew = sincos(kTwoPi * work.target_.frequency_hz * settings_.skew_s);
-  return ratio_factor(work) * ((scatter.device / scatter.reference) * Complex{skew.cos, -skew.sin});
+  const SinCos skew = sincos(kTwoPi * work_.target_.frequency_hz * results_.settings.skew_s);
+  return ratio_factor() * ((scatter.device / scatter.reference) * Complex{skew.cos, -skew.sin});
 }
 
-void Sweep::end_target(hal::AnalogStream& stream, SweepWorkspace& work) noexcept {
-  PointScatter scatter = scatter_of(work.repeats_);
-  scatter.repeat_samples = static_cast<double>(work.target_.repeat_frames);
-  const double by_noise = kNoisePeak * expected_scatter(scatter, inputs_);
-  if (scatter.largest > by_noise + (work.target_.was_suspect ? kDistortedShare : kLooseShare)) {
-    suspect(Status::kDistorted, stream, work);
+void Sweep::end_target() noexcept {
+  PointScatter scatter = scatter_of(work_.repeats_);
+  scatter.repeat_samples = static_cast<double>(work_.target_.repeat_frames);
+  const double by_noise = kNoisePeak * expected_scatter(scatter, results_.inputs);
+  if (scatter.largest > by_noise + (work_.target_.was_suspect ? kDistortedShare : kLooseShare)) {
+    suspect(Status::kDistorted);
     return;
   }
-  const double repeats = static_cast<double>(work.repeats_.count);
-  scatter.reference_rest_v = sqrt(work.reference_rest2_ / repeats);
-  scatter.device_rest_v = sqrt(work.device_rest2_ / repeats);
-  const Complex ratio = ratio_of(scatter, work);
-  const Status status = plausibility_of(ratio, work);
+  const double repeats = static_cast<double>(work_.repeats_.count);
+  scatter.reference_rest_v = sqrt(work_.reference_rest2_ / repeats);
+  scatter.device_rest_v = sqrt(work_.device_rest2_ / repeats);
+  const Complex ratio = ratio_of(scatter);
+  const Status status = plausibility_of(ratio);
   if (status != Status::kOk) {
-    suspect(status, stream, work);
+    suspect(status);
     return;
   }
-  if (stage_ == SweepStage::kPoints) {
-    store_point(scatter, ratio, work);
-    work.last_ratio_ = ratio;
-  } else if (stage_ == SweepStage::kCheckBefore) {
-    check_before_ = ratio;
+  if (results_.stage == SweepStage::kPoints) {
+    store_point(scatter, ratio);
+    work_.last_ratio_ = ratio;
+  } else if (results_.stage == SweepStage::kCheckBefore) {
+    results_.check_before = ratio;
   } else {
-    check_after_ = ratio;
+    results_.check_after = ratio;
   }
-  begin_next(work);
+  begin_next();
 }
 
-Status Sweep::plausibility_of(Complex ratio, const SweepWorkspace& work) const noexcept {
-  const bool is_check = stage_ != SweepStage::kPoints;
-  const double factor = ratio_factor(work);
-  const double sheet = settings_.expected_sensitivity;
+Status Sweep::plausibility_of(Complex ratio) const noexcept {
+  const bool is_check = results_.stage != SweepStage::kPoints;
+  const double factor = ratio_factor();
+  const double sheet = results_.settings.expected_sensitivity;
   Complex expected = {sheet > 0.0 ? sheet : magnitude(ratio), 0.0};
-  if (stage_ == SweepStage::kCheckAfter) {
-    expected = check_before_;
+  if (results_.stage == SweepStage::kCheckAfter) {
+    expected = results_.check_before;
   } else if (!is_check) {
-    expected = norm(work.last_ratio_) > 0.0 ? work.last_ratio_ : check_before_;
+    expected = norm(work_.last_ratio_) > 0.0 ? work_.last_ratio_ : results_.check_before;
   }
   // Exchanged channels turn V_a/V_r, which is ratio/factor, into its inverse.
   const Complex swapped = Complex{factor * factor, 0.0} / expected;
   const double jump = magnitude(ratio) / magnitude(expected);
-  if (work.target_.was_overrange && is_beyond(jump, is_check ? kPlausibleFactor : kLargestJump)) {
+  if (work_.target_.was_overrange && is_beyond(jump, is_check ? kPlausibleFactor : kLargestJump)) {
     return Status::kSaturated;
   }
   if (is_check && is_beyond(jump, kPlausibleFactor)) {
@@ -252,7 +258,7 @@ Status Sweep::plausibility_of(Complex ratio, const SweepWorkspace& work) const n
   const double phase = atan2(ratio.im, ratio.re);
   // Past half a turn of lag the phase begins again at the top.
   const bool went_on = !is_check && expected.re < 0.0 && to_expected < 0.5 * magnitude(expected);
-  if (phase > kLead_rad + kLeadPerHz_rad * work.target_.frequency_hz && !went_on) {
+  if (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz && !went_on) {
     return cables_of(ratio, expected, swapped);
   }
   // The check frequency is far below the resonance, where the lag is small.
@@ -262,21 +268,21 @@ Status Sweep::plausibility_of(Complex ratio, const SweepWorkspace& work) const n
   return Status::kOk;
 }
 
-void Sweep::store_point(const PointScatter& scatter, Complex ratio, SweepWorkspace& work) noexcept {
-  SweepPoint& point = points_[point_count_];
-  work.scatter_[point_count_] = scatter;
+void Sweep::store_point(const PointScatter& scatter, Complex ratio) noexcept {
+  SweepPoint& point = results_.table[results_.point_count];
+  work_.scatter_[results_.point_count] = scatter;
   point = SweepPoint();
-  point.point.frequency_hz = work.target_.frequency_hz;
+  point.point.frequency_hz = work_.target_.frequency_hz;
   point.point.amplitude = magnitude(ratio);
   point.point.phase_rad = atan2(ratio.im, ratio.re);
-  point.acceleration_mps2 = acceleration_of(magnitude(scatter.reference), work);
-  point.drive_v = work.drive_.amplitude_v();
+  point.acceleration_mps2 = acceleration_of(magnitude(scatter.reference));
+  point.drive_v = work_.drive_.amplitude_v();
   const double samples = scatter.repeat_samples * static_cast<double>(scatter.repeats);
-  point.flagged = distortion_of(scatter.reference_rest_v, inputs_.silent_reference.noise_v,
+  point.flagged = distortion_of(scatter.reference_rest_v, results_.inputs.silent_reference.noise_v,
                                 magnitude(scatter.reference), samples) > kFlaggedShare ||
-                  distortion_of(scatter.device_rest_v, inputs_.silent_device.noise_v,
+                  distortion_of(scatter.device_rest_v, results_.inputs.silent_device.noise_v,
                                 magnitude(scatter.device), samples) > kFlaggedShare;
-  ++point_count_;
+  ++results_.point_count;
 }
 
 }  // namespace emax::app

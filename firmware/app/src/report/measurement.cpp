@@ -47,7 +47,7 @@ void wrap(ReportWriter& out, const char* words) noexcept {
 }
 
 void write_settings(const Measurement& measurement, ReportWriter& out) noexcept {
-  const SweepSettings& settings = measurement.sweep.settings();
+  const SweepSettings& settings = measurement.sweep.settings;
   out.label("Bench");
   if (measurement.simulated != nullptr) {
     out.text("simulated, seed ").integer(measurement.simulated->seed).text(", ");
@@ -82,9 +82,9 @@ void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
   out.text(" us after the reference, taken out").line();
 }
 
-void write_silence(const Sweep& sweep, ReportWriter& out) noexcept {
-  const SilentChannel& reference = sweep.silent_reference();
-  const SilentChannel& device = sweep.silent_device();
+void write_silence(const SweepResults& sweep, ReportWriter& out) noexcept {
+  const SilentChannel& reference = sweep.inputs.silent_reference;
+  const SilentChannel& device = sweep.inputs.silent_device;
   out.label("Without drive");
   if (!(reference.noise_v > 0.0) && !(device.noise_v > 0.0)) {
     out.text("not measured, or without any noise").line();
@@ -94,10 +94,10 @@ void write_silence(const Sweep& sweep, ReportWriter& out) noexcept {
   out.fixed(kMilli * device.noise_v, 3).text(" mV (device)").line();
 }
 
-void write_check(const Sweep& sweep, ReportWriter& out) noexcept {
-  const double before = magnitude(sweep.check_before());
-  const double after = magnitude(sweep.check_after());
-  out.label("Check").text("at ").general(sweep.settings().check_hz, 6).text(" Hz ");
+void write_check(const SweepResults& sweep, ReportWriter& out) noexcept {
+  const double before = magnitude(sweep.check_before);
+  const double after = magnitude(sweep.check_after);
+  out.label("Check").text("at ").general(sweep.settings.check_hz, 6).text(" Hz ");
   if (!(before > 0.0)) {
     out.text("not measured").line();
     return;
@@ -113,7 +113,7 @@ void write_check(const Sweep& sweep, ReportWriter& out) noexcept {
   out.fixed(kPercent * (after / before - 1.0), 4).text(" % drift").line();
 }
 
-void write_flagged(const Sweep& sweep, ReportWriter& out) noexcept {
+void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
   std::size_t flagged = 0;
   for (const SweepPoint& point : sweep.points()) {
     flagged += point.flagged ? 1u : 0u;
@@ -139,12 +139,12 @@ void write_flagged(const Sweep& sweep, ReportWriter& out) noexcept {
   }
 }
 
-void write_common(const Sweep& sweep, ReportWriter& out) noexcept {
-  const CommonBudget& common = sweep.common();
+void write_common(const SweepResults& sweep, ReportWriter& out) noexcept {
+  const CommonBudget& common = sweep.common;
   out.label("Common to all points").text("reference ").fixed(kPercent * common.reference, 4);
   out.text(" %, gains ").fixed(kPercent * common.gain, 4).text(" %, mounting ");
   out.fixed(kPercent * common.mounting, 4).text(" %, drift ");
-  if (magnitude(sweep.check_before()) > 0.0 && magnitude(sweep.check_after()) > 0.0) {
+  if (magnitude(sweep.check_before) > 0.0 && magnitude(sweep.check_after) > 0.0) {
     out.fixed(kPercent * common.drift, 4).text(" %").line();
   } else {
     out.text("not known").line();
@@ -203,7 +203,7 @@ void write_budget_row(const SweepPoint& point, const CommonBudget& common, int d
   out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
 }
 
-void write_budget(const Sweep& sweep, ReportWriter& out) noexcept {
+void write_budget(const SweepResults& sweep, ReportWriter& out) noexcept {
   const Span<const SweepPoint> points = sweep.points();
   if (points.empty()) {
     return;
@@ -216,32 +216,33 @@ void write_budget(const Sweep& sweep, ReportWriter& out) noexcept {
   out.part(ReportPart::kTable);
   write_budget_head(&Column::name, out);
   write_budget_head(&Column::unit, out);
-  double least_u = total_u(points[0], sweep.common());
+  double least_u = total_u(points[0], sweep.common);
   for (const SweepPoint& point : points) {
-    const double u = total_u(point, sweep.common());
+    const double u = total_u(point, sweep.common);
     least_u = u < least_u ? u : least_u;
   }
   const int decimals = decimals_for(least_u);
   for (const SweepPoint& point : points) {
-    write_budget_row(point, sweep.common(), decimals, out);
+    write_budget_row(point, sweep.common, decimals, out);
   }
 }
 
-void write_fault(const Sweep& sweep, const Evaluation* refused, ReportWriter& out) noexcept {
+void write_fault(const SweepResults& sweep, const EvaluationResults* refused,
+                 ReportWriter& out) noexcept {
   out.heading(ReportSection::kFault, "FAULT");
-  if (sweep.status() == Status::kOk) {
+  if (sweep.status == Status::kOk) {
     out.label("identification").text("the points lead to no result").line();
-    wrap(out, refused->failure().reason);
+    wrap(out, refused->failure.reason);
     return;
   }
-  out.label(name_of_fault(sweep.status()));
-  if (sweep.failed_frequency_hz() > 0.0) {
-    out.text("at ").general(sweep.failed_frequency_hz(), 7).text(" Hz");
+  out.label(name_of_fault(sweep.status));
+  if (sweep.failed_frequency_hz > 0.0) {
+    out.text("at ").general(sweep.failed_frequency_hz, 7).text(" Hz");
   } else {
     out.text("before the first frequency, with the drive at zero");
   }
   out.line();
-  wrap(out, explain(sweep.status()));
+  wrap(out, explain(sweep.status));
 }
 
 }  // namespace
@@ -303,22 +304,22 @@ const char* name_of_fault(Status status) noexcept {
 }
 
 void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept {
-  const Sweep& sweep = measurement.sweep;
+  const SweepResults& sweep = measurement.sweep;
   out.heading(ReportSection::kMeasurement,
               "MEASUREMENT (stepped sine, back to back with the reference sensor)");
   write_settings(measurement, out);
-  write_chain(sweep.settings(), out);
+  write_chain(sweep.settings, out);
   write_silence(sweep, out);
   write_check(sweep, out);
   out.label("Points measured").integer(sweep.points().size()).text(" of ");
-  out.integer(sweep.settings().frequency_count).line();
+  out.integer(sweep.settings.frequency_count).line();
   write_flagged(sweep, out);
   write_common(sweep, out);
   write_budget(sweep, out);
 }
 
-void write_measurement(const ReportContext& context, const Evaluation* refused, TextWriter& out,
-                       ReportMarkup* markup) noexcept {
+void write_measurement(const ReportContext& context, const EvaluationResults* refused,
+                       TextWriter& out, ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
   write_title(context.labels, writer);
   writer.part(ReportPart::kWarning)

@@ -41,13 +41,13 @@ double reduced_chi_square_quantile(std::size_t dof, double z) noexcept {
 
 // What was put in
 
-void write_source(const Evaluation& evaluation, const ReportContext& context,
+void write_source(const EvaluationResults& results, const ReportContext& context,
                   ReportWriter& out) noexcept {
   out.label("Device");
-  if (evaluation.source() == Source::kModel) {
+  if (results.source == Source::kModel) {
     out.text("parameters as given").line();
-    const Accelerometer& device = evaluation.device().estimate;
-    const ParameterBox& u = evaluation.device().u;
+    const Accelerometer& device = results.device.estimate;
+    const ParameterBox& u = results.device.u;
     out.indent().text("S = ").exact(device.sensitivity).text(" V/(m/s^2)");
     out.and_v_per_g(device.sensitivity, 7).text(", standard u = ").exact(u.sensitivity);
     out.and_v_per_g(u.sensitivity, 3).line();
@@ -61,7 +61,7 @@ void write_source(const Evaluation& evaluation, const ReportContext& context,
         .line();
     return;
   }
-  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  const Span<const ResponsePoint> points = results.fit.response().points();
   if (context.measurement != nullptr) {
     const bool is_simulated = context.measurement->simulated != nullptr;
     out.text("measured on the ").text(is_simulated ? "simulated " : "").text("bench").line();
@@ -77,9 +77,9 @@ void write_source(const Evaluation& evaluation, const ReportContext& context,
   out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
 }
 
-void write_filter(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const Settings& settings = evaluation.settings();
-  const Butterworth& filter = evaluation.model().filter();
+void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const Settings& settings = results.settings;
+  const Butterworth& filter = results.model.filter();
   out.label("Reference filter").text("Butterworth low-pass, order ");
   out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
   out.exact(filter.cutoff_hz).text(" Hz").line();
@@ -127,15 +127,15 @@ void write_random_numbers(const Settings& settings, ReportWriter& out) noexcept 
   out.line();
 }
 
-void write_input(const Evaluation& evaluation, const ReportContext& context,
+void write_input(const EvaluationResults& results, const ReportContext& context,
                  ReportWriter& out) noexcept {
-  const Settings& settings = evaluation.settings();
+  const Settings& settings = results.settings;
   out.heading(ReportSection::kInput, "WHAT WAS PUT IN");
-  write_source(evaluation, context, out);
-  write_filter(evaluation, out);
+  write_source(results, context, out);
+  write_filter(results, out);
   out.label("Time T").general(kMilli * settings.duration_s, 10).text(" ms").line();
-  out.label("Limit a").general(evaluation.limit_mps2(), 7).text(" m/s^2");
-  out.and_g(evaluation.limit_mps2(), 7);
+  out.label("Limit a").general(results.limit_mps2, 7).text(" m/s^2");
+  out.and_g(results.limit_mps2, 7);
   out.text(settings.limit_is_auto ? ", the number of S" : ", as given").line();
   write_method(settings, out);
   write_random_numbers(settings, out);
@@ -167,8 +167,8 @@ void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
   out.cell(0).text("  ").text(estimate.unit).line();
 }
 
-void write_estimates(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const WlspDrawsResult draws = evaluation.fit_draws();
+void write_estimates(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const WlspDrawsResult& draws = results.fit_draws;
   out.part(ReportPart::kTable);
   out.part(ReportPart::kHead);
   out.cell(0).text("  ").left(11).text("parameter");
@@ -179,8 +179,8 @@ void write_estimates(const Evaluation& evaluation, ReportWriter& out) noexcept {
   out.cell(0).text("  unit").line();
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     const Estimate estimate = {kParameterNames[i], kParameterUnits[i],
-                               estimate_of(evaluation.device().estimate, i),
-                               sqrt(evaluation.covariance(i, i)), sqrt(draws.covariance[i][i])};
+                               estimate_of(results.device.estimate, i),
+                               sqrt(results.covariance(i, i)), sqrt(draws.covariance[i][i])};
     write_estimate(estimate, out);
     if (i == 0 && out.in_g()) {
       constexpr double kG = kStandardGravity_mps2;
@@ -195,13 +195,13 @@ void write_estimates(const Evaluation& evaluation, ReportWriter& out) noexcept {
   if (draws.discarded > 0) {
     out.text(" (").integer(draws.discarded).text(" more gave no device)");
   }
-  if (evaluation.fit().response().has_common()) {
+  if (results.fit.response().has_common()) {
     out.text(",\n  both with the part that is common to all points");
   }
   out.line();
 }
 
-void write_truth(const Evaluation& evaluation, const Accelerometer& truth,
+void write_truth(const EvaluationResults& results, const Accelerometer& truth,
                  ReportWriter& out) noexcept {
   out.label("Truth of the bench").text("S = ").exact(truth.sensitivity).text(" V/(m/s^2)");
   out.and_v_per_g(truth.sensitivity, 7)
@@ -211,9 +211,9 @@ void write_truth(const Evaluation& evaluation, const Accelerometer& truth,
   out.exact(truth.damping).line();
   out.indent().text("the estimates are off by");
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
-    const double off = estimate_of(evaluation.device().estimate, i) - estimate_of(truth, i);
+    const double off = estimate_of(results.device.estimate, i) - estimate_of(truth, i);
     out.text(i == 0 ? " " : i == 1 ? ", " : " and ");
-    out.fixed(off / sqrt(evaluation.covariance(i, i)), 2);
+    out.fixed(off / sqrt(results.covariance(i, i)), 2);
   }
   out.text(" u").line();
 }
@@ -226,12 +226,12 @@ void write_common_part(const Wlsp& fit, ReportWriter& out) noexcept {
   out.text(" % of every amplitude (standard u), one effect for all points").line();
 }
 
-void write_correlations(const Evaluation& evaluation, ReportWriter& out) noexcept {
+void write_correlations(const EvaluationResults& results, ReportWriter& out) noexcept {
   out.label("Correlation");
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     for (std::size_t j = i + 1; j < kWlspParameters; ++j) {
-      const double scale = sqrt(evaluation.covariance(i, i) * evaluation.covariance(j, j));
-      const double r = evaluation.covariance(i, j) / scale;
+      const double scale = sqrt(results.covariance(i, i) * results.covariance(j, j));
+      const double r = results.covariance(i, j) / scale;
       out.text(i + j == 1 ? "" : ", ").text("r(").text(kParameterNames[i]).text(",");
       out.text(kParameterNames[j]).text(") = ").fixed(abs(r) < kLeastCorrelationShown ? 0.0 : r, 3);
     }
@@ -329,33 +329,33 @@ void write_large_residuals(const Wlsp& fit, ReportWriter& out) noexcept {
   }
 }
 
-void write_fit(const Evaluation& evaluation, const Measurement* measurement,
+void write_fit(const EvaluationResults& results, const Measurement* measurement,
                ReportWriter& out) noexcept {
-  const WlspFit& fit = evaluation.fit().result();
+  const WlspFit& fit = results.fit.result();
   out.heading(ReportSection::kFit, "FIT");
   out.part(ReportPart::kText);
   out.text("  S, f0 and beta by weighted least squares on 1/K, two equations for each point.\n\n");
-  write_estimates(evaluation, out);
+  write_estimates(results, out);
   out.line();
   if (measurement != nullptr && measurement->simulated != nullptr) {
-    write_truth(evaluation, measurement->simulated->truth, out);
+    write_truth(results, measurement->simulated->truth, out);
   }
-  write_common_part(evaluation.fit(), out);
+  write_common_part(results.fit, out);
   out.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
   out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
   out.label("Birge ratio").general(fit.birge_ratio, 4);
   out.text(" (1 where model and uncertainties hold)").line();
-  write_correlations(evaluation, out);
+  write_correlations(results, out);
   write_fit_warning(fit, out);
-  write_large_residuals(evaluation.fit(), out);
+  write_large_residuals(results.fit, out);
 }
 
 // Error system
 
-void write_error_system(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const double duration_s = evaluation.settings().duration_s;
-  const Peak peak = evaluation.peak();
-  const SettlingTime settling = evaluation.settling_time();
+void write_error_system(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double duration_s = results.settings.duration_s;
+  const Peak& peak = results.peak;
+  const SettlingTime& settling = results.settling_time;
   out.heading(ReportSection::kErrorSystem,
               "ERROR SYSTEM (impulse response k = sensor minus filter)");
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
@@ -392,9 +392,8 @@ void write_switching_times(const SwitchingSignal& signal, ReportWriter& out) noe
   out.line();
 }
 
-void write_trace(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const Span<const double> trace = evaluation.trace();
-  const double a2 = square(evaluation.limit_mps2());
+void write_trace(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const Span<const double> trace = results.trace();
   const std::size_t shown = trace.size() < kTraceShown ? trace.size() : kTraceShown;
   out.label("E_0, E_1, ... (V^2 s)");
   for (std::size_t i = 0; i < shown; ++i) {
@@ -402,35 +401,35 @@ void write_trace(const Evaluation& evaluation, ReportWriter& out) noexcept {
       out.line();
       out.indent();
     }
-    out.right(16).scientific(a2 * trace[i], 8);
+    out.right(16).scientific(trace[i], 8);
   }
   out.text(shown < trace.size() ? " ..." : "").line();
 }
 
-void write_how_found(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const MaximumEnergy& maximum = evaluation.maximum();
-  const Settings& settings = evaluation.settings();
+void write_how_found(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const MaximumEnergy& maximum = results.maximum;
+  const Settings& settings = results.settings;
   const double cell_s = settings.duration_s / static_cast<double>(maximum.cells);
   out.label("Found on").integer(maximum.cells).text(" cells of ");
   out.general(kMicro * cell_s, 5).text(" us");
   if (settings.method == Method::kPaper) {
     out.text(maximum.at_rest ? ", at rest after " : ", not yet at rest after ");
     out.integer(maximum.iterations).text(" iterations").line();
-    write_trace(evaluation, out);
+    write_trace(results, out);
     return;
   }
   out.text(", the best of ").integer(maximum.starts).text(" starts, after ");
   out.integer(maximum.iterations).text(" iterations").line();
 }
 
-void write_bound(const Evaluation& evaluation, ReportWriter& out) noexcept {
+void write_bound(const EvaluationResults& results, ReportWriter& out) noexcept {
   out.label("Upper bound");
-  if (!evaluation.has_bound()) {
+  if (!results.has_bound) {
     out.text("none passed its check for this device and time").line();
     return;
   }
-  const double energy = evaluation.energy_v2s();
-  const double bound = evaluation.bound_v2s();
+  const double energy = results.energy_v2s();
+  const double bound = results.bound_v2s;
   out.scientific(bound, 8)
       .text(" V^2 s: proven, no signal of any shape within +-a has more")
       .line();
@@ -440,37 +439,37 @@ void write_bound(const Evaluation& evaluation, ReportWriter& out) noexcept {
   }
 }
 
-void write_energy(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const double energy = evaluation.energy_v2s();
+void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double energy = results.energy_v2s();
   out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
   out.label("E").scientific(energy, 8).text(" V^2 s = ").general(kMilli * energy, 5);
   out.text(" mV^2 s (the paper prints \"mV m^2\")").line();
-  out.label("xi = E/(a^2 T)").general(evaluation.xi(), 7).text(" (V/(m/s^2))^2");
+  out.label("xi = E/(a^2 T)").general(results.xi(), 7).text(" (V/(m/s^2))^2");
   if (out.in_g()) {
-    out.text(" (").general(square(kStandardGravity_mps2) * evaluation.xi(), 7).text(" (V/g)^2)");
+    out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");
   }
   out.line();
-  const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
+  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
   out.label(is_ise ? "rms error sqrt(E/T)" : "sqrt(E/T)");
   if (energy >= 0.0) {
-    const double full = evaluation.device().estimate.sensitivity * evaluation.limit_mps2();
-    const double rms = evaluation.rms_error_v();
+    const double full = results.device.estimate.sensitivity * results.limit_mps2;
+    const double rms = results.rms_error_v();
     out.general(rms, 5).text(" V = ").general(kPercent * rms / full, 4).text(" % of S a").line();
   } else {
     out.text("none, the energy difference is negative").line();
   }
-  write_switching_times(evaluation.maximum().signal, out);
-  write_how_found(evaluation, out);
-  if (evaluation.settings().method == Method::kBest) {
+  write_switching_times(results.maximum.signal, out);
+  write_how_found(results, out);
+  if (results.settings.method == Method::kBest) {
     out.part(ReportPart::kText).text("  The best signal found.\n");
   } else {
     out.part(ReportPart::kText)
         .text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
   }
-  write_bound(evaluation, out);
+  write_bound(results, out);
   out.label("Largest |y|");
-  if (evaluation.has_absolute_error()) {
-    out.general(evaluation.absolute_error_v(), 7);
+  if (results.has_absolute_error) {
+    out.general(results.absolute_error_v, 7);
     out.text(" V, by another signal: a times the integral of |k|").line();
   } else {
     out.text("not computed: k moves too often for so long a T").line();
@@ -498,7 +497,7 @@ void write_adaptive(const AdaptiveResult& adaptive, ReportWriter& out) noexcept 
   }
 }
 
-void write_trials(const Evaluation& evaluation, const MonteCarloResult& result,
+void write_trials(const EvaluationResults& results, const MonteCarloResult& result,
                   ReportWriter& out) noexcept {
   const std::uint32_t rule = minimum_trials(result.probability);
   out.label("Trials").integer(result.trials);
@@ -506,8 +505,8 @@ void write_trials(const Evaluation& evaluation, const MonteCarloResult& result,
     out.text("; rule (3), 1e4/(1 - p), asks for ").integer(rule);
   }
   out.line();
-  if (evaluation.settings().adaptive) {
-    write_adaptive(evaluation.adaptive(), out);
+  if (results.settings.adaptive) {
+    write_adaptive(results.adaptive, out);
     return;
   }
   if (rule == 0 || result.trials < rule) {
@@ -518,9 +517,9 @@ void write_trials(const Evaluation& evaluation, const MonteCarloResult& result,
   }
 }
 
-void write_maximum(const Evaluation& evaluation, const MonteCarloResult& result,
+void write_maximum(const EvaluationResults& results, const MonteCarloResult& result,
                    ReportWriter& out) noexcept {
-  const Accelerometer at = evaluation.device_at_maximum();
+  const Accelerometer& at = results.device_at_maximum;
   out.label("E_max").scientific(result.maximum, 8).text(" V^2 s in trial ");
   out.integer(result.trial_of_maximum).text(" (the first is 0), with").line();
   out.indent().text("S = ").general(at.sensitivity, 8).text(" V/(m/s^2)");
@@ -532,16 +531,16 @@ void write_maximum(const Evaluation& evaluation, const MonteCarloResult& result,
       .line();
 }
 
-void write_guard(const EnergyGuard& guard, ReportWriter& out) noexcept {
-  if (guard.searches() == 0) {
+void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
+  if (guard.searches == 0) {
     return;
   }
-  out.label("Guard").integer(guard.searches()).text(" full searches, ");
-  out.integer(guard.disagreements());
-  out.text(guard.disagreements() == 1 ? " disagreement" : " disagreements").line();
-  if (guard.disagreements() > 0) {
+  out.label("Guard").integer(guard.searches).text(" full searches, ");
+  out.integer(guard.disagreements);
+  out.text(guard.disagreements == 1 ? " disagreement" : " disagreements").line();
+  if (guard.disagreements > 0) {
     out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
-    out.general(kPercent * guard.largest_excess(), 3)
+    out.general(kPercent * guard.largest_excess, 3)
         .text(
             " % more energy with another signal than\n"
             "  the best one at the estimates. Maximum and intervals are too low; the parameters' "
@@ -550,41 +549,40 @@ void write_guard(const EnergyGuard& guard, ReportWriter& out) noexcept {
   }
 }
 
-void write_monte_carlo(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const bool is_box = evaluation.settings().distribution == Distribution::kBox;
+void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const bool is_box = results.settings.distribution == Distribution::kBox;
   out.heading(ReportSection::kMonteCarlo,
               is_box ? "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))"
                      : "MONTE CARLO (S, f0 and beta jointly normal, with their covariance)");
-  if (!evaluation.has_monte_carlo()) {
+  if (!results.has_monte_carlo) {
     out.part(ReportPart::kText).text("  Not run: all uncertainties are zero.\n");
     return;
   }
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  write_trials(evaluation, result, out);
-  if (evaluation.trial_scale() > 1.0) {
+  const MonteCarloResult& result = results.trials.result;
+  write_trials(results, result, out);
+  if (results.trial_scale() > 1.0) {
     out.label("Uncertainties").text("times the Birge ratio, ");
-    out.general(evaluation.trial_scale(), 4).line();
+    out.general(results.trial_scale(), 4).line();
   }
-  write_maximum(evaluation, result, out);
+  write_maximum(results, result, out);
   out.label("Mean of E").scientific(result.mean, 8).text(" V^2 s").line();
   out.label("u(E)").scientific(result.u, 2).text(" V^2 s, the standard deviation of the trials");
   out.line();
   write_interval(out, "Symmetric interval", result.probability, result.symmetric);
   write_interval(out, "Shortest interval", result.probability, result.shortest);
-  write_guard(evaluation.guard(), out);
+  write_guard(results.guard, out);
 }
 
 // Trend
 
-void write_trend(const Evaluation& evaluation, ReportWriter& out) noexcept {
-  const Span<const TrendPoint> points = evaluation.trend_points();
+void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const Span<const TrendPoint> points = results.trend_points();
   out.heading(ReportSection::kTrend, "TREND (maximum energy at the estimates against T)");
   if (points.empty()) {
     out.part(ReportPart::kText).text("  Not asked for.\n");
     return;
   }
-  const Trend& trend = evaluation.trend();
-  const double a2 = square(evaluation.limit_mps2());
+  const Trend& trend = results.trend;
   out.part(ReportPart::kTable);
   out.part(ReportPart::kHead);
   out.cell(12).text("T/ms");
@@ -593,7 +591,7 @@ void write_trend(const Evaluation& evaluation, ReportWriter& out) noexcept {
   for (const TrendPoint& point : points) {
     out.part(ReportPart::kLine);
     out.cell(12).general(kMilli * point.duration_s, 8);
-    out.cell(20).scientific(a2 * point.energy, 8);
+    out.cell(20).scientific(point.energy_v2s, 8);
     out.cell(20).scientific(trend.slope * point.duration_s + trend.intercept, 8).line();
   }
   out.label("Line").text("E = ").general(trend.slope, 7).text(" V^2 * T ");
@@ -612,25 +610,25 @@ double reduced_chi_square_limit(std::size_t dof) noexcept {
   return reduced_chi_square_quantile(dof, kQuantile99);
 }
 
-void write_report(const Evaluation& evaluation, const ReportContext& context, TextWriter& out,
+void write_report(const EvaluationResults& results, const ReportContext& context, TextWriter& out,
                   ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
   write_title(context.labels, writer);
-  write_input(evaluation, context, writer);
+  write_input(results, context, writer);
   if (context.measurement != nullptr) {
     write_measurement_section(*context.measurement, writer);
   }
-  if (evaluation.source() == Source::kPoints) {
-    write_fit(evaluation, context.measurement, writer);
+  if (results.source == Source::kPoints) {
+    write_fit(results, context.measurement, writer);
   }
-  write_error_system(evaluation, writer);
-  write_energy(evaluation, writer);
-  write_monte_carlo(evaluation, writer);
-  write_trend(evaluation, writer);
+  write_error_system(results, writer);
+  write_energy(results, writer);
+  write_monte_carlo(results, writer);
+  write_trend(results, writer);
 }
 
-void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept {
-  const Failure& failure = evaluation.failure();
+void write_failure(const EvaluationResults& results, TextWriter& out) noexcept {
+  const Failure& failure = results.failure;
   if (failure.reason == nullptr) {
     return;
   }
@@ -644,7 +642,7 @@ void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept {
   if (failure.stage != Stage::kFitDraws) {
     return;
   }
-  const WlspFit& fit = evaluation.fit().result();
+  const WlspFit& fit = results.fit.result();
   if (failure.status == Status::kInvertedPolarity) {
     out.text(" (The fit gives S = ").general(fit.model.sensitivity, 5).text(" V/(m/s^2).)");
   } else if (failure.status == Status::kOverdamped) {

@@ -41,38 +41,38 @@ double spaced(std::size_t row, std::size_t rows, double end) noexcept {
 }
 
 /// No curve may be a pattern of its rows.
-std::size_t signal_rows(const Evaluation& evaluation) noexcept {
+std::size_t signal_rows(const EvaluationResults& results) noexcept {
   constexpr double kRowsPerPeriod = 20.0;
-  const double f0_hz = evaluation.device().estimate.natural_frequency_hz;
-  const double cutoff_hz = evaluation.settings().cutoff_hz;
-  const double periods = (f0_hz > cutoff_hz ? f0_hz : cutoff_hz) * evaluation.settings().duration_s;
+  const double f0_hz = results.device.estimate.natural_frequency_hz;
+  const double cutoff_hz = results.settings.cutoff_hz;
+  const double periods = (f0_hz > cutoff_hz ? f0_hz : cutoff_hz) * results.settings.duration_s;
   const auto rows = static_cast<std::size_t>(kRowsPerPeriod * periods) + 1;
   return rows > kSignalRows ? rows : kSignalRows;
 }
 
-void write_signal_row(const Evaluation& evaluation, double time_s, double sign,
+void write_signal_row(const EvaluationResults& results, double time_s, double sign,
                       TextWriter& out) noexcept {
-  const double row[] = {time_s, sign * evaluation.limit_mps2(), evaluation.output_v(time_s)};
+  const double row[] = {time_s, sign * results.limit_mps2, results.output_v(time_s)};
   write_row(row, out);
 }
 
 }  // namespace
 
-void write_frequency_response_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
+void write_frequency_response_csv(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,")
       .text("residual_re,residual_im\n");
-  if (evaluation.source() != Source::kPoints) {
+  if (results.source != Source::kPoints) {
     return;
   }
-  const Accelerometer& model = evaluation.device().estimate;
-  const Span<const ResponsePoint> points = evaluation.fit().response().points();
+  const Accelerometer& model = results.device.estimate;
+  const Span<const ResponsePoint> points = results.fit.response().points();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ResponsePoint& point = points[i];
-    const Complex residual = evaluation.fit().normalised_residual(i);
+    const Complex residual = results.fit.normalised_residual(i);
     const double fitted[] = {amplitude(model, point.frequency_hz),
                              phase_rad(model, point.frequency_hz) * kDegreesPerRadian, residual.re,
                              residual.im};
-    write_point(point, evaluation.fit().response().common()[i], out);
+    write_point(point, results.fit.response().common()[i], out);
     out.text(",");
     write_row(fitted, out);
   }
@@ -81,16 +81,16 @@ void write_frequency_response_csv(const Evaluation& evaluation, TextWriter& out)
 void write_measured_points_csv(const Measurement& measurement, TextWriter& out) noexcept {
   out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n");
   for (const SweepPoint& point : measurement.sweep.points()) {
-    write_point(point.point, measurement.sweep.common().total, out);
+    write_point(point.point, measurement.sweep.common.total, out);
     out.line();
   }
 }
 
-void write_impulse_response_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
+void write_impulse_response_csv(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text("t_s,k,ka,kf\n");
-  const ModalModel& model = evaluation.model();
-  const double duration_s = evaluation.settings().duration_s;
-  const double settling_s = evaluation.settling_time().time_s;
+  const ModalModel& model = results.model;
+  const double duration_s = results.settings.duration_s;
+  const double settling_s = results.settling_time.time_s;
   const double end_s = settling_s > duration_s ? settling_s : duration_s;
   for (std::size_t i = 0; i < kResponseRows; ++i) {
     const double time_s = spaced(i, kResponseRows, end_s);
@@ -101,45 +101,44 @@ void write_impulse_response_csv(const Evaluation& evaluation, TextWriter& out) n
   }
 }
 
-void write_signal_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
+void write_signal_csv(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text("t_s,x_mps2,y_v\n");
-  const Span<const double> switches_s = evaluation.maximum().signal.times_s();
-  const double end_s = evaluation.settings().duration_s;
+  const Span<const double> switches_s = results.maximum.signal.times_s();
+  const double end_s = results.settings.duration_s;
   double sign = 1.0;
   std::size_t next = 0;
-  const std::size_t rows = signal_rows(evaluation);
+  const std::size_t rows = signal_rows(results);
   for (std::size_t i = 0; i < rows; ++i) {
     const double time_s = spaced(i, rows, end_s);
     for (; next < switches_s.size() && switches_s[next] <= time_s; ++next) {
-      write_signal_row(evaluation, switches_s[next], sign, out);
+      write_signal_row(results, switches_s[next], sign, out);
       sign = -sign;
-      write_signal_row(evaluation, switches_s[next], sign, out);
+      write_signal_row(results, switches_s[next], sign, out);
     }
     // A switch that falls on a row has been written, from both sides.
     if (next == 0 || switches_s[next - 1] != time_s) {
-      write_signal_row(evaluation, time_s, sign, out);
+      write_signal_row(results, time_s, sign, out);
     }
   }
 }
 
-void write_trend_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
+void write_trend_csv(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text("T_s,E,fit\n");
-  const double a2 = evaluation.limit_mps2() * evaluation.limit_mps2();
-  const Trend& trend = evaluation.trend();
-  for (const TrendPoint& point : evaluation.trend_points()) {
-    const double row[] = {point.duration_s, a2 * point.energy,
+  const Trend& trend = results.trend;
+  for (const TrendPoint& point : results.trend_points()) {
+    const double row[] = {point.duration_s, point.energy_v2s,
                           trend.slope * point.duration_s + trend.intercept};
     write_row(row, out);
   }
 }
 
-void write_histogram_csv(const Evaluation& evaluation, TextWriter& out) noexcept {
+void write_histogram_csv(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text("E_low,E_high,count\n");
-  if (!evaluation.has_monte_carlo()) {
+  if (!results.has_monte_carlo) {
     return;
   }
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  const Span<const std::uint32_t> bins = evaluation.monte_carlo().histogram();
+  const MonteCarloResult& result = results.trials.result;
+  const Span<const std::uint32_t> bins = results.trials.histogram();
   const std::size_t rows = result.maximum > result.minimum ? kHistogramRows : 1;
   const std::size_t bins_per_row = bins.size() / rows;
   const double width = (result.maximum - result.minimum) / static_cast<double>(rows);

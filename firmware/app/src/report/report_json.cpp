@@ -11,17 +11,17 @@ namespace {
 
 constexpr double kPercent = 100.0;
 
-const char* source_of(const Evaluation& evaluation, const Measurement* measurement) noexcept {
+const char* source_of(const EvaluationResults& results, const Measurement* measurement) noexcept {
   if (measurement != nullptr) {
     return "bench";
   }
-  return evaluation.source() == Source::kPoints ? "points" : "model";
+  return results.source == Source::kPoints ? "points" : "model";
 }
 
-void write_model(const Evaluation& evaluation, const ReportContext& context,
+void write_model(const EvaluationResults& results, const ReportContext& context,
                  JsonWriter& json) noexcept {
-  const Device& device = evaluation.device();
-  const bool is_fit = evaluation.source() == Source::kPoints;
+  const Device& device = results.device;
+  const bool is_fit = results.source == Source::kPoints;
   json.open("model");
   json.number("S", device.estimate.sensitivity);
   json.number("f0", device.estimate.natural_frequency_hz);
@@ -33,25 +33,24 @@ void write_model(const Evaluation& evaluation, const ReportContext& context,
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     json.open_row(nullptr);
     for (std::size_t j = 0; j < kWlspParameters; ++j) {
-      json.number(nullptr, evaluation.covariance(i, j));
+      json.number(nullptr, results.covariance(i, j));
     }
     json.close_row();
   }
   json.close(']');
   if (is_fit) {
-    json.number("chi2", evaluation.fit().result().chi2);
-    json.integer("dof", evaluation.fit().result().dof);
+    json.number("chi2", results.fit.result().chi2);
+    json.integer("dof", results.fit.result().dof);
   } else {
     json.null("chi2");
     json.null("dof");
   }
-  if (is_fit && evaluation.fit().response().has_common()) {
-    json.number("common_percent",
-                kCoverageFactor * kPercent * evaluation.fit().response().common()[0]);
+  if (is_fit && results.fit.response().has_common()) {
+    json.number("common_percent", kCoverageFactor * kPercent * results.fit.response().common()[0]);
   } else {
     json.null("common_percent");
   }
-  json.words("source", source_of(evaluation, context.measurement));
+  json.words("source", source_of(results, context.measurement));
   if (context.source_name != nullptr) {
     json.words("name", context.source_name);
   } else {
@@ -62,20 +61,21 @@ void write_model(const Evaluation& evaluation, const ReportContext& context,
 
 // The bench
 
-void write_fault(const Sweep& sweep, const Evaluation* refused, JsonWriter& json) noexcept {
-  const bool is_sweep = sweep.status() != Status::kOk;
+void write_fault(const SweepResults& sweep, const EvaluationResults* refused,
+                 JsonWriter& json) noexcept {
+  const bool is_sweep = sweep.status != Status::kOk;
   if (!is_sweep && refused == nullptr) {
     json.null("fault");
     return;
   }
   json.open("fault");
-  json.words("name", is_sweep ? name_of_fault(sweep.status()) : "identification");
-  if (is_sweep && sweep.failed_frequency_hz() > 0.0) {
-    json.number("frequency", sweep.failed_frequency_hz());
+  json.words("name", is_sweep ? name_of_fault(sweep.status) : "identification");
+  if (is_sweep && sweep.failed_frequency_hz > 0.0) {
+    json.number("frequency", sweep.failed_frequency_hz);
   } else {
     json.null("frequency");
   }
-  json.words("advice", is_sweep ? explain(sweep.status()) : refused->failure().reason);
+  json.words("advice", is_sweep ? explain(sweep.status) : refused->failure.reason);
   json.close();
 }
 
@@ -101,18 +101,18 @@ void write_number_or_null(const char* name, bool exists, double value, JsonWrite
   }
 }
 
-void write_common(const Sweep& sweep, JsonWriter& json) noexcept {
-  const double before = sqrt(norm(sweep.check_before()));
-  const double after = sqrt(norm(sweep.check_after()));
+void write_common(const SweepResults& sweep, JsonWriter& json) noexcept {
+  const double before = sqrt(norm(sweep.check_before));
+  const double after = sqrt(norm(sweep.check_after));
   json.open("check");
-  json.number("frequency", sweep.settings().check_hz);
+  json.number("frequency", sweep.settings.check_hz);
   write_number_or_null("before", before > 0.0, before, json);
   write_number_or_null("after", after > 0.0, after, json);
   json.close();
   const bool has_drift = before > 0.0 && after > 0.0;
   write_number_or_null("drift_percent", has_drift,
                        has_drift ? kPercent * (after / before - 1.0) : 0.0, json);
-  const CommonBudget& common = sweep.common();
+  const CommonBudget& common = sweep.common;
   json.open("common");
   json.number("reference", common.reference);
   json.number("gain", common.gain);
@@ -123,7 +123,7 @@ void write_common(const Sweep& sweep, JsonWriter& json) noexcept {
   json.number("common_percent", kCoverageFactor * kPercent * common.total);
 }
 
-void write_budget(const Sweep& sweep, JsonWriter& json) noexcept {
+void write_budget(const SweepResults& sweep, JsonWriter& json) noexcept {
   json.open_row("flagged");
   for (const SweepPoint& point : sweep.points()) {
     if (point.flagged) {
@@ -145,14 +145,14 @@ void write_budget(const Sweep& sweep, JsonWriter& json) noexcept {
   json.close(']');
 }
 
-void write_bench(const Measurement* measurement, const Evaluation* refused,
+void write_bench(const Measurement* measurement, const EvaluationResults* refused,
                  JsonWriter& json) noexcept {
   if (measurement == nullptr) {
     json.null("bench");
     return;
   }
-  const Sweep& sweep = measurement->sweep;
-  const SweepSettings& settings = sweep.settings();
+  const SweepResults& sweep = measurement->sweep;
+  const SweepSettings& settings = sweep.settings;
   json.open("bench");
   write_simulated(measurement->simulated, json);
   write_fault(sweep, refused, json);
@@ -177,21 +177,21 @@ const char* name_of(GainMode mode) noexcept {
   return mode == GainMode::kTrack ? "track" : "auto";
 }
 
-void write_filter(const Evaluation& evaluation, JsonWriter& json) noexcept {
-  const Butterworth& filter = evaluation.model().filter();
+void write_filter(const EvaluationResults& results, JsonWriter& json) noexcept {
+  const Butterworth& filter = results.model.filter();
   json.open("filter");
   json.integer("order", static_cast<std::uint64_t>(filter.order));
   json.number("cutoff", filter.cutoff_hz);
   json.number("gain", filter.gain);
-  json.words("gain_mode", name_of(evaluation.settings().gain_mode));
+  json.words("gain_mode", name_of(results.settings.gain_mode));
   json.close();
 }
 
-void write_impulse_response(const Evaluation& evaluation, JsonWriter& json) noexcept {
-  const SettlingTime settling = evaluation.settling_time();
+void write_impulse_response(const EvaluationResults& results, JsonWriter& json) noexcept {
+  const SettlingTime& settling = results.settling_time;
   json.open("impulse_response");
-  json.number("peak", evaluation.peak().value);
-  json.number("peak_time_s", evaluation.peak().time_s);
+  json.number("peak", results.peak.value);
+  json.number("peak_time_s", results.peak.time_s);
   if (settling.found) {
     json.number("settling_time_s", settling.time_s);
   } else {
@@ -200,20 +200,20 @@ void write_impulse_response(const Evaluation& evaluation, JsonWriter& json) noex
   json.close();
 }
 
-void write_energy(const Evaluation& evaluation, JsonWriter& json) noexcept {
-  const Settings& settings = evaluation.settings();
-  const MaximumEnergy& maximum = evaluation.maximum();
+void write_energy(const EvaluationResults& results, JsonWriter& json) noexcept {
+  const Settings& settings = results.settings;
+  const MaximumEnergy& maximum = results.maximum;
   const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   json.open("energy");
   json.words("criterion", is_ise ? "ise" : "difference");
   json.words("method", settings.method == Method::kBest ? "best" : "paper");
   json.number("T", settings.duration_s);
-  json.number("a", evaluation.limit_mps2());
-  json.number("E", evaluation.energy_v2s());
-  json.number("xi", evaluation.xi());
-  json.number("rms", evaluation.rms_error_v());
-  if (evaluation.has_bound()) {
-    json.number("bound", evaluation.bound_v2s());
+  json.number("a", results.limit_mps2);
+  json.number("E", results.energy_v2s());
+  json.number("xi", results.xi());
+  json.number("rms", results.rms_error_v());
+  if (results.has_bound) {
+    json.number("bound", results.bound_v2s);
   } else {
     json.null("bound");
   }
@@ -223,28 +223,28 @@ void write_energy(const Evaluation& evaluation, JsonWriter& json) noexcept {
   }
   json.close_row();
   json.integer("iterations", maximum.iterations);
-  if (evaluation.has_absolute_error()) {
-    json.number("absolute_error", evaluation.absolute_error_v());
+  if (results.has_absolute_error) {
+    json.number("absolute_error", results.absolute_error_v);
   } else {
     json.null("absolute_error");
   }
   json.close();
 }
 
-void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept {
-  if (!evaluation.has_monte_carlo()) {
+void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexcept {
+  if (!results.has_monte_carlo) {
     json.null("monte_carlo");
     return;
   }
-  const MonteCarloResult result = evaluation.monte_carlo().result();
-  const Accelerometer at = evaluation.device_at_maximum();
+  const MonteCarloResult& result = results.trials.result;
+  const Accelerometer& at = results.device_at_maximum;
   json.open("monte_carlo");
   json.integer("trials", result.trials);
   json.number("probability", result.probability);
   json.words("distribution",
-             evaluation.settings().distribution == Distribution::kBox ? "box" : "normal");
+             results.settings.distribution == Distribution::kBox ? "box" : "normal");
   json.open_row("seed");
-  for (const std::uint32_t seed : evaluation.settings().seed) {
+  for (const std::uint32_t seed : results.settings.seed) {
     json.integer(nullptr, seed);
   }
   json.close_row();
@@ -259,26 +259,25 @@ void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept 
   json.number("u", result.u);
   json.pair("interval", result.symmetric.low, result.symmetric.high);
   json.pair("shortest", result.shortest.low, result.shortest.high);
-  if (evaluation.guard().searches() > 0) {
-    json.integer("disagreements", evaluation.guard().disagreements());
+  if (results.guard.searches > 0) {
+    json.integer("disagreements", results.guard.disagreements);
   } else {
     json.null("disagreements");
   }
   json.close();
 }
 
-void write_trend(const Evaluation& evaluation, JsonWriter& json) noexcept {
-  if (evaluation.trend_points().empty()) {
+void write_trend(const EvaluationResults& results, JsonWriter& json) noexcept {
+  if (results.trend_points().empty()) {
     json.null("trend");
     return;
   }
-  const double a2 = evaluation.limit_mps2() * evaluation.limit_mps2();
   json.open("trend");
-  json.number("slope", evaluation.trend().slope);
-  json.number("intercept", evaluation.trend().intercept);
+  json.number("slope", results.trend.slope);
+  json.number("intercept", results.trend.intercept);
   json.open("points", '[');
-  for (const TrendPoint& point : evaluation.trend_points()) {
-    json.pair(nullptr, point.duration_s, a2 * point.energy);
+  for (const TrendPoint& point : results.trend_points()) {
+    json.pair(nullptr, point.duration_s, point.energy_v2s);
   }
   json.close(']');
   json.close();
@@ -308,23 +307,23 @@ void write_head(const Labels& labels, JsonWriter& json) noexcept {
 
 }  // namespace
 
-void write_json(const Evaluation& evaluation, const ReportContext& context,
+void write_json(const EvaluationResults& results, const ReportContext& context,
                 TextWriter& out) noexcept {
   JsonWriter json(out);
   json.open(nullptr);
   write_head(context.labels, json);
-  write_model(evaluation, context, json);
+  write_model(results, context, json);
   write_bench(context.measurement, nullptr, json);
-  write_filter(evaluation, json);
-  write_impulse_response(evaluation, json);
-  write_energy(evaluation, json);
-  write_monte_carlo(evaluation, json);
-  write_trend(evaluation, json);
+  write_filter(results, json);
+  write_impulse_response(results, json);
+  write_energy(results, json);
+  write_monte_carlo(results, json);
+  write_trend(results, json);
   json.close();
   out.line();
 }
 
-void write_measurement_json(const ReportContext& context, const Evaluation* refused,
+void write_measurement_json(const ReportContext& context, const EvaluationResults* refused,
                             TextWriter& out) noexcept {
   JsonWriter json(out);
   json.open(nullptr);

@@ -222,18 +222,18 @@ bool is_possible(const Identification& id) noexcept {
 
 }  // namespace
 
-Identification identification_of(const Evaluation& evaluation) noexcept {
+Identification identification_of(const EvaluationResults& results) noexcept {
   Identification identification;
-  identification.source = evaluation.source();
-  identification.device = evaluation.device();
+  identification.source = results.source;
+  identification.device = results.device;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      identification.covariance[i][j] = evaluation.covariance(i, j);
+      identification.covariance[i][j] = results.covariance(i, j);
     }
   }
-  if (evaluation.source() == Source::kPoints) {
-    identification.chi2 = evaluation.fit().result().chi2;
-    identification.dof = evaluation.fit().result().dof;
+  if (results.source == Source::kPoints) {
+    identification.chi2 = results.fit.result().chi2;
+    identification.dof = results.fit.result().dof;
   }
   return identification;
 }

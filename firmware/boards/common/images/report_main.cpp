@@ -3,20 +3,20 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emax/app/base/in_place.hpp"
 #include "emax/app/base/text_writer.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/measure/sweep.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_context.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
 #include "emax/app/settings/settings.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/base/decimal.hpp"
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/board/board.hpp"
 #include "emax/board/semihosting.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/identify/frequency_response.hpp"
 
 #include "command_line.hpp"
 #include "test_image.hpp"
@@ -27,10 +27,12 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kFault = 3;
 
+/// What the arguments ask for: these settings, and the sequencer's device if it has one.
 struct Job {
-  app::Settings settings;
-  app::Device device;
-  bool measures = false;
+  explicit Job(app::Sequencer& with) noexcept : sequencer(with) {}
+
+  app::Settings settings = app::kDefaultSettings;
+  app::Sequencer& sequencer;
 };
 
 /// Reads numbers with commas between them.
@@ -59,8 +61,8 @@ std::size_t read_numbers(Span<const char> text, Span<double> numbers) noexcept {
 bool take_model(Span<const char> value, Job& job) noexcept {
   std::array<double, 7> numbers = {};
   const std::size_t count = read_numbers(value, numbers);
-  job.device = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
-  job.measures = false;
+  job.sequencer.take(
+      app::Device{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}});
   return count == 3 || count == 6;
 }
 
@@ -88,8 +90,9 @@ bool take_option(Span<const char> name, Span<const char> value, Job& job) noexce
   return is(name, "--trend") && take_trend(value, job);
 }
 
-bool read_job(Span<const char> command_line, Job& job) noexcept {
-  Words words(command_line);
+bool read_job(Job& job) noexcept {
+  std::array<char, kCommandLineRoom> line = {};
+  Words words({line.data(), read_command_line(line)});
   // The emulator puts the path of the image in front.
   while (!words.done() && !is(words.next(), "report")) {
   }
@@ -102,90 +105,49 @@ bool read_job(Span<const char> command_line, Job& job) noexcept {
   return app::check(job.settings).setting == nullptr;
 }
 
-/// What takes memory. Of the workspaces only one is used at a time.
-class Work {
- public:
-  /// Runs the job on this bench.
-  Status run(const Job& job, hal::AnalogStream& bench) noexcept {
-    const Status status = job.measures ? measure(bench) : Status::kOk;
-    return status == Status::kOk ? evaluate(job) : status;
+bool measures(const Job& job) noexcept { return job.sequencer.origin() != app::Origin::kModel; }
+
+/// @returns Why there is no result, if so.
+Status work(const Job& job, hal::AnalogStream& bench) noexcept {
+  app::Sequencer& sequencer = job.sequencer;
+  const app::Refusal refusal =
+      measures(job) ? sequencer.measure_and_evaluate(bench, app::default_sweep_settings(),
+                                                     job.settings, app::Goal::kReport)
+                    : sequencer.evaluate(job.settings, app::Goal::kReport);
+  while (sequencer.is_working()) {
+    sequencer.step();
   }
-
-  void print(const Job& job, app::TextWriter& out) const noexcept;
-
- private:
-  union Workspace {
-    constexpr Workspace() noexcept : none{} {}
-
-    char none;
-    app::SweepWorkspace sweep;
-    app::EvaluationWorkspace evaluation;
-  };
-
-  Status measure(hal::AnalogStream& bench) noexcept;
-  Status evaluate(const Job& job) noexcept;
-
-  app::Sweep sweep_;
-  FrequencyResponse points_;
-  app::Evaluation evaluation_;
-  Workspace workspace_;
-};
-
-Status Work::measure(hal::AnalogStream& bench) noexcept {
-  Status status = sweep_.start(app::default_sweep_settings(), bench, workspace_.sweep);
-  if (status != Status::kOk) {
-    return status;
-  }
-  while (!sweep_.done()) {
-    sweep_.step(bench, workspace_.sweep);
-  }
-  status = sweep_.status();
-  return status == Status::kOk ? sweep_.copy_to(points_) : status;
+  return refusal ? refusal.status : sequencer.failure().status;
 }
 
-Status Work::evaluate(const Job& job) noexcept {
-  app::EvaluationWorkspace& workspace = workspace_.evaluation;
-  const Status status = job.measures
-                            ? evaluation_.start_from_points(points_, job.settings, workspace)
-                            : evaluation_.start_from_model(job.device, job.settings, workspace);
-  while (status == Status::kOk && !evaluation_.done()) {
-    evaluation_.step(workspace);
-  }
-  return evaluation_.status();
-}
-
-void Work::print(const Job& job, app::TextWriter& out) const noexcept {
-  if (!job.measures) {
-    write_report(evaluation_, app::ReportContext{}, out);
-    return;
-  }
-  const app::Measurement measurement = {sweep_, ports().analog.format(), about().simulated};
+void print(const Job& job, app::TextWriter& out) noexcept {
+  const app::Measurement measurement = {job.sequencer.sweep(), ports().analog.format(),
+                                        about().simulated};
   app::ReportContext context;
-  context.measurement = &measurement;
-  write_report(evaluation_, context, out);
+  context.measurement = measures(job) ? &measurement : nullptr;
+  write_report(job.sequencer.evaluation(), context, out);
 }
 
 int run() noexcept {
-  static Job job;
-  static Work work;
+  static app::InPlace<Job> job_memory;
+  static app::Sequencer sequencer;
   Status status = start_board();
   ConsoleSink sink(ports().console);
   app::TextWriter out(sink);
-  job = {app::kDefaultSettings, {}, true};
-  std::array<char, kCommandLineRoom> line = {};
-  if (!read_job({line.data(), read_command_line(line)}, job)) {
+  Job& job = job_memory.make(sequencer);
+  if (!read_job(job)) {
     out.text(
         "expected: report [--model S,f0,beta[,uS,uf0,ubeta]] [--trials N] [--trend T,T,...]\n");
     return kBadInput;
   }
   if (status == Status::kOk) {
-    status = work.run(job, ports().analog);
+    status = work(job, ports().analog);
   }
   if (status != Status::kOk) {
     out.text(explain(status)).line();
     return kFault;
   }
-  work.print(job, out);
+  print(job, out);
   return 0;
 }
 

@@ -5,18 +5,17 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/instrument/self_test.hpp"
-#include "emax/app/measure/sweep.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/instrument/error_words.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/scpi/call.hpp"
 #include "emax/app/scpi/command.hpp"
 #include "emax/app/scpi/session.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
 #include "emax/app/settings/settings.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
-#include "emax/app/store/record_store.hpp"
-#include "emax/app/store/saved_state.hpp"
+#include "emax/base/status.hpp"
 #include "emax/base/wichmann_hill.hpp"
-#include "emax/energy/phi_operator.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/hal/byte_stream.hpp"
 #include "emax/hal/clock.hpp"
@@ -54,7 +53,7 @@ struct Ports {
   hal::Store* store = nullptr;
 };
 
-/// A console that executes SCPI commands, and the sequencer behind it.
+/// A console that executes SCPI commands with a sequencer, and keeps their settings.
 ///
 ///     static InPlace<Instrument> memory;
 ///     Instrument& instrument = memory.make(ports, board);
@@ -86,8 +85,8 @@ class Instrument {
   void abort() noexcept;
 
   /// @returns True while a sweep, an evaluation or a fixed point runs.
-  bool is_working() const noexcept { return job_ != Job::kNone; }
-  bool is_sweeping() const noexcept { return job_ == Job::kSweep; }
+  bool is_working() const noexcept { return sequencer_.is_working(); }
+  bool is_sweeping() const noexcept { return sequencer_.job() == Job::kSweep; }
   /// @returns False if the next `poll()` has nothing to do but to look for bytes.
   bool is_busy() const noexcept { return is_working() || has_acted_; }
   /// @returns True if all that came in was executed and all answers were handed over. Work in the
@@ -101,157 +100,106 @@ class Instrument {
   bool wants_to_write() const noexcept { return !session_.output().empty(); }
 
   /// Lends memory for the values of the trials: as `Evaluation::lend_trial_store()`.
-  void lend_trial_store(Span<double> store) noexcept { evaluation_.lend_trial_store(store); }
-
-  /// Why something cannot be done; kNoError if it can.
-  struct Refusal {
-    scpi::ErrorCode code = scpi::ErrorCode::kNoError;
-    const char* words = nullptr;
-    const char* subject = nullptr;  ///< What they are about; may be null.
-
-    explicit operator bool() const noexcept { return code != scpi::ErrorCode::kNoError; }
-  };
-
-  const Settings& settings() const noexcept { return settings_; }
-  const SweepSettings& sweep_settings() const noexcept { return sweep_settings_; }
-  /// @returns What *RST sets: the defaults of the board.
-  SweepSettings default_sweep() const noexcept;
-  /// Takes new settings over, unless they cannot be had together or what runs uses the old ones.
-  /// What was made with other settings than these is dropped.
-  Refusal take(const Settings& next) noexcept;
-  Refusal take(const SweepSettings& next) noexcept;
+  void lend_trial_store(Span<double> store) noexcept { sequencer_.lend_trial_store(store); }
 
   /// @returns The table that parser and documentation share.
   static scpi::Table<Instrument> commands() noexcept;
+
+  // What the commands are made of. Where words are answered, they say why nothing was done.
+
+  const Board& board() const noexcept { return board_; }
+  Sequencer& sequencer() noexcept { return sequencer_; }
+  const Sequencer& sequencer() const noexcept { return sequencer_; }
+
+  const Settings& settings() const noexcept { return settings_; }
+  const SweepSettings& sweep_settings() const noexcept { return sweep_settings_; }
+  /// Those of *RST.
+  SweepSettings default_sweep() const noexcept;
+  /// Takes settings that `check()` accepts, unless work runs that needs the old ones.
+  ErrorWords take(const Settings& settings) noexcept;
+  ErrorWords take(const SweepSettings& settings) noexcept;
+  /// @returns Why this part cannot change now.
+  ErrorWords conflict_with(Part part) const noexcept;
+
+  // The device; each refused while work runs that needs the one of before.
+  ErrorWords take(const Device& device) noexcept;
+  ErrorWords take(const FrequencyResponse& points) noexcept;
+  ErrorWords clear_points() noexcept;
+
+  /// *RST: as after power on, but for what the store holds.
+  void reset() noexcept;
+
+  // Work in the background: INITiate. Nothing happens where the goal's results are there.
+  ErrorWords initiate_sweep() noexcept;
+  ErrorWords initiate(Goal goal) noexcept;
+
+  // Work for a query. True once what it needs is there; otherwise the query waits or has failed.
+  bool provide(scpi::Call& call, Goal goal) noexcept;
+  /// The fit: the device is then the one that the points give.
+  bool provide_fit(scpi::Call& call) noexcept;
+  bool provide_fixed_point(scpi::Call& call) noexcept;
+
+  /// *OPC: sets event bit 0 once nothing runs.
+  void complete_operation() noexcept;
+  /// *CLS: not any more.
+  void forget_completion() noexcept { completes_operation_ = false; }
+
+  /// The next random number from the seed of the settings.
+  double next_random() noexcept { return generator_.next(); }
+  /// Begins again at the seed.
+  void restart_random() noexcept;
+
+  bool has_store() const noexcept { return ports_.store != nullptr; }
+  /// While nothing runs, for they borrow its memory. Statuses of `RecordStore` and `decode()`.
+  Status save_settings(std::uint32_t slot) noexcept;
+  Status recall_settings(std::uint32_t slot) noexcept;
+
+  /// While nothing runs.
+  ///
+  /// @returns Nothing if the report is longer than the memory. Valid until something runs.
+  Span<const char> render_report() noexcept;
 
   /// Bit of STATus:OPERation: an evaluation or a fixed point runs.
   static constexpr std::uint16_t kComputing = 1u << 8;
 
  private:
-  friend struct InstrumentCommands;
-
-  /// What runs.
-  enum class Job : std::uint8_t { kNone, kSweep, kEvaluation, kFixedPoint };
-
-  /// Where the device comes from.
-  enum class Origin : std::uint8_t { kNothing, kSweep, kTable, kModel };
-
-  /// What a change makes stale, and whose work it disturbs.
-  enum class Change : std::uint8_t {
-    kSweep,
-    kTrials,
-    kTrend,
-    kPaper,  ///< The energy by Method::kPaper.
-    kEnergy,
-    kDevice,
-  };
-
-  /// The fixed point of CALCulate:ENERgy:FPA?.
-  struct FixedPointWorkspace {
-    GridWorkspace grid;
-    PhiOperator phi;
-  };
-  /// A signal that was asked for.
-  struct SignalWorkspace {
-    double times_s[kMaxSwitches];
-    SwitchingSignal signal;
-  };
-  /// A record on its way to the store or back.
-  struct RecordWorkspace {
-    std::uint8_t frame[RecordStore::kFrameBytes + kMaxSavedSettingsBytes];
-    SavedSettings scratch;
-  };
-  /// Of a report: twice the longest that the tests have.
-  static constexpr std::size_t kTextCapacity = std::size_t{24} * 1024;
-
-  /// One memory for everything of which only one runs at a time.
-  union Workspace {
-    constexpr Workspace() noexcept : text{} {}
-
-    char text[kTextCapacity];
-    EvaluationWorkspace evaluation;
-    SweepWorkspace sweep;
-    FixedPointWorkspace fixed_point;
-    SignalWorkspace signal;
-    FrequencyResponse table;  // While it grows.
-    SelfTestWorkspace self_test;
-    RecordWorkspace record;
-  };
-
   void follow_peer() noexcept;
   void receive() noexcept;
   void execute() noexcept;
   void send() noexcept;
   void work() noexcept;
-  void show_condition() noexcept;
-  void begin_job(Job job) noexcept;
-  void end_job() noexcept;
+  void begin_work(std::uint16_t condition) noexcept;
+  void end_work(Job job) noexcept;
+  void complete_work() noexcept;
   void end_sweep() noexcept;
   void end_evaluation() noexcept;
-
-  Refusal begin_sweep() noexcept;
-  Refusal begin_evaluation(Goal goal) noexcept;
-  Refusal begin_fixed_point() noexcept;
-  bool needs_lost_fit() const noexcept;
-  Refusal failure_of_evaluation() const noexcept;
-  void step_fixed_point() noexcept;
-  double fixed_point_energy(std::size_t iterate) noexcept;
-  void iterate_fixed_point() noexcept;
-
-  bool has(Goal goal) const noexcept;
-  Refusal conflict_with(Change change) const noexcept;
-  void invalidate(Change change) noexcept;
-  Status save_settings(std::uint32_t slot) noexcept;
-  Status recall_settings(std::uint32_t slot) noexcept;
+  ErrorWords begin_evaluation(Goal goal) noexcept;
+  bool can_begin(scpi::Call& call) noexcept;
+  void change_device() noexcept;
+  void reset_settings() noexcept;
+  void show_fit_quality() noexcept;
   void keep_identification() noexcept;
   void restore_identification() noexcept;
-  void reset() noexcept;
-  void reset_settings() noexcept;
-  void seed_generator() noexcept;
-  void show_fit_quality() noexcept;
-  Span<const char> render_report() noexcept;
-  double progress() const noexcept;
-  const char* stage_name() const noexcept;
 
   Ports ports_;
   Board board_;
   scpi::Session session_;
   Settings settings_;
   SweepSettings sweep_settings_;
-  Device device_ = {};             // Of Origin::kModel.
-  Identification identification_;  // From the store.
   WichmannHill generator_;
-  FrequencyResponse points_;
-  Sweep sweep_;
-  Evaluation evaluation_;
-  Workspace workspace_;
-  Refusal failure_;  // Of the job that was begun last.
   std::uint64_t deadlock_since_us_ = 0;
-  std::size_t iterations_ = 0;  // Of the fixed point, so far.
-  Goal goal_ = Goal::kModel;
-  Job job_ = Job::kNone;
-  Origin origin_ = Origin::kNothing;         // Of the device that is evaluated.
-  Origin points_origin_ = Origin::kNothing;  // Of the points that FETCh answers.
-  bool has_identification_ = false;
-  bool is_fit_kept_ = false;          // The fit of these points is in the store.
-  bool is_background_ = false;        // The job was begun by INITiate.
-  bool is_evaluation_valid_ = false;  // The evaluation is that of this device and these settings,
-  bool are_trials_valid_ = false;     // and so are these parts of it, if they are complete.
-  bool is_trend_valid_ = false;
-  bool is_report_valid_ = false;  // And complete.
-  bool is_query_job_ = false;     // The query under way has begun the job that runs or has ended.
-  bool is_fixed_point_ready_ = false;  // Its iterations are counted.
-  bool fixed_point_rests_ = false;
+  bool is_fit_kept_ = false;    // The fit of these points is in the store.
+  bool is_background_ = false;  // The job was begun by INITiate.
+  bool is_query_job_ = false;   // The query under way has begun the job that runs or has ended.
   bool was_aborted_ = false;
   bool completes_operation_ = false;  // *OPC waits for the job.
   bool was_connected_ = false;
   bool is_deadlocked_ = false;
   bool has_acted_ = false;
+  Sequencer sequencer_;
 };
 
-// Of its own: settings, console, status.
-static_assert(sizeof(Instrument) <= sizeof(Evaluation) + sizeof(EvaluationWorkspace) +
-                                        sizeof(Sweep) + sizeof(FrequencyResponse) +
-                                        std::size_t{9} * 1024);
+// Beside the sequencer: settings, console, status.
+static_assert(sizeof(Instrument) <= sizeof(Sequencer) + std::size_t{9} * 1024);
 
 }  // namespace emax::app

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/app/measure/silence_record.hpp"
+#include "emax/app/measure/silent_channel.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
 #include "emax/base/complex.hpp"
 #include "emax/base/span.hpp"

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "emax/app/base/text_writer.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
-#include "emax/app/measure/sweep.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/report/report_context.hpp"
 #include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
@@ -21,7 +21,7 @@ struct SimulatedBench {
 
 /// Refers to what it describes; made for one call.
 struct Measurement {
-  const Sweep& sweep;  ///< That is `done()`.
+  const SweepResults& sweep;  ///< That is `done()`.
   const hal::StreamFormat& format;
   const SimulatedBench* simulated = nullptr;  ///< Null for a real bench.
 };
@@ -35,11 +35,11 @@ const char* name_of_fault(Status status) noexcept;
 ///
 /// @param[in] context With a measurement.
 /// @param[in] refused The evaluation that has refused the points; null if the sweep failed.
-void write_measurement(const ReportContext& context, const Evaluation* refused, TextWriter& out,
-                       ReportMarkup* markup = nullptr) noexcept;
+void write_measurement(const ReportContext& context, const EvaluationResults* refused,
+                       TextWriter& out, ReportMarkup* markup = nullptr) noexcept;
 
 /// The same as results.json, with null for all that there is not.
-void write_measurement_json(const ReportContext& context, const Evaluation* refused,
+void write_measurement_json(const ReportContext& context, const EvaluationResults* refused,
                             TextWriter& out) noexcept;
 
 /// The points so far as f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg, with expanded total

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "emax/app/base/text_writer.hpp"
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report_context.hpp"
 
@@ -19,12 +19,12 @@ namespace emax::app {
 /// Nothing is kept between calls, so the same evaluation gives the same text again: once to count
 /// the characters, once to send them.
 ///
-/// @param[in] evaluation With the stage kDone.
+/// @param[in] results    With the stage kDone.
 /// @param[in] context    Its measurement has come to a good end, and its points were handed to
 ///                       `start_from_points()`.
 /// @param[in] markup     Null for the text as it is to be read. Otherwise it sets its marks, and
 ///                       `out` gets the words and numbers between them.
-void write_report(const Evaluation& evaluation, const ReportContext& context, TextWriter& out,
+void write_report(const EvaluationResults& results, const ReportContext& context, TextWriter& out,
                   ReportMarkup* markup = nullptr) noexcept;
 
 /// Writes results.json. Always valid JSON in ASCII: a number that is not finite, or that does not
@@ -36,14 +36,14 @@ void write_report(const Evaluation& evaluation, const ReportContext& context, Te
 /// label there is an object `labels` of all five, null for those not given. Names and labels are
 /// read as UTF-8; U+FFFD stands for what is not valid.
 ///
-/// @param[in] evaluation With the stage kDone.
+/// @param[in] results    With the stage kDone.
 /// @param[in] context    As for the report.
-void write_json(const Evaluation& evaluation, const ReportContext& context,
+void write_json(const EvaluationResults& results, const ReportContext& context,
                 TextWriter& out) noexcept;
 
 /// Writes one sentence, without line feed, on why an evaluation was refused or has ended early,
 /// with the T or the fitted values that it is about; nothing if it has not failed.
-void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept;
+void write_failure(const EvaluationResults& results, TextWriter& out) noexcept;
 
 // Tables for other programs, each with a header line. The evaluation has the stage kDone. Tables of
 // what there is none of (points, trials, trend) are the header alone.
@@ -52,24 +52,23 @@ void write_failure(const Evaluation& evaluation, TextWriter& out) noexcept;
 /// residual_im: expanded uncertainties (k = 2) as in the table of points, normalised residuals of
 /// 1/K. A part that is common to all points is within u_amplitude: the file can be read as a table
 /// of points, with the common part as the reference's uncertainty.
-void write_frequency_response_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
+void write_frequency_response_csv(const EvaluationResults& results, TextWriter& out) noexcept;
 
 /// t_s,k,ka,kf: kResponseRows rows from 0 to T or to the settling time, whichever is later.
-void write_impulse_response_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
+void write_impulse_response_csv(const EvaluationResults& results, TextWriter& out) noexcept;
 inline constexpr std::size_t kResponseRows = 1001;
 
 /// t_s,x_mps2,y_v: equally spaced rows from 0 to T, kSignalRows or as many as give the fastest
 /// oscillation 20 rows per period, and two for each switch, before and after it.
-void write_signal_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
+void write_signal_csv(const EvaluationResults& results, TextWriter& out) noexcept;
 inline constexpr std::size_t kSignalRows = 2001;
 
 /// T_s,E,fit: E and the straight line in V^2 s.
-void write_trend_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
+void write_trend_csv(const EvaluationResults& results, TextWriter& out) noexcept;
 
 /// E_low,E_high,count: kHistogramRows equal bins from the smallest to the largest E of the trials,
 /// in V^2 s. If all trials gave the same E, one row.
-void write_histogram_csv(const Evaluation& evaluation, TextWriter& out) noexcept;
-inline constexpr std::size_t kHistogramRows = 64;
+void write_histogram_csv(const EvaluationResults& results, TextWriter& out) noexcept;
 
 /// The value of chi2/dof that is exceeded once in a hundred fits where the model and the stated
 /// uncertainties hold; the report warns above it. By the approximation of Wilson and Hilferty,

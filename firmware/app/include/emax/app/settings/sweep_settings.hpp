@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "emax/app/settings/settings_error.hpp"
+#include "emax/base/capacity.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/identify/frequency_response.hpp"
 
 namespace emax::app {
 

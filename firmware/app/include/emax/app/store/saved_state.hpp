@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/settings/settings.hpp"
 #include "emax/app/settings/settings_rows.hpp"
 #include "emax/app/settings/sweep_settings.hpp"
@@ -46,8 +46,8 @@ struct Identification {
 static_assert(std::is_trivially_copyable_v<SavedSettings>);
 static_assert(std::is_trivially_copyable_v<Identification>);
 
-/// @param[in] evaluation With a device: `has_model()`.
-Identification identification_of(const Evaluation& evaluation) noexcept;
+/// @param[in] results    With a device: `has_model()`.
+Identification identification_of(const EvaluationResults& results) noexcept;
 
 /// Writes settings as bytes: kind and version, then each setting in little endian, doubles by their
 /// bits, of each table as many entries as are in use. The same on every target.

@@ -1,0 +1,177 @@
+// What an evaluation leaves: fit, error system, maximum energy, trials and trend.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/app/evaluate/stage.hpp"
+#include "emax/app/settings/settings.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
+#include "emax/energy/energy_search.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/identify/wlsp.hpp"
+#include "emax/model/accelerometer.hpp"
+#include "emax/model/modal_model.hpp"
+#include "emax/model/response_scan.hpp"
+#include "emax/uncertainty/energy_trials.hpp"
+#include "emax/uncertainty/monte_carlo.hpp"
+#include "emax/uncertainty/trend.hpp"
+
+namespace emax::app {
+
+/// A device with the standard uncertainties of its parameters.
+struct Device {
+  Accelerometer estimate;
+  ParameterBox u;  ///< Standard uncertainties; also the half-widths of paper equation (21).
+};
+
+enum class Source : std::uint8_t { kPoints, kModel };
+
+/// The largest energy for one duration of the trend.
+struct TrendPoint {
+  double duration_s = 0.0;
+  double energy_v2s = 0.0;
+};
+
+/// Rows of the histogram of the trials' energies.
+inline constexpr std::size_t kHistogramRows = 64;
+
+/// What is kept of the trials: the results and a coarse histogram. Energies in V^2 s.
+struct TrialResults {
+  MonteCarloResult result;
+  std::uint32_t rows[kHistogramRows] = {};
+
+  /// The number of values in equal bins from the smallest to the largest.
+  Span<const std::uint32_t> histogram() const noexcept { return Span<const std::uint32_t>(rows); }
+
+  /// Takes over the results of a procedure that is done.
+  void take(const MonteCarlo& monte_carlo, const MonteCarloStore& store) noexcept;
+};
+
+/// How the full searches went that were made for some of the trials.
+struct GuardResults {
+  std::uint32_t searches = 0;  ///< 0 for Method::kPaper, whose trials are full runs.
+  std::uint32_t disagreements = 0;
+  double largest_excess = 0.0;  ///< As `EnergyGuard::largest_excess()`.
+};
+
+/// The results of an evaluation, while it runs and afterwards, each part complete once its flag is
+/// set. 11 KiB, all zero before the first one.
+///
+/// They know what they were made from: `holds()` and `is_of()` are the only truth on what may be
+/// shown as the answer for a device and settings.
+struct EvaluationResults {
+  /// How many energies of the fixed point are kept: some more than the report shows.
+  static constexpr std::size_t kTraceLength = 16;
+
+  // Large ones last: what is near the front is reached by shorter instructions.
+  Settings settings = kNoSettings;  ///< That they were made with.
+  Source source = Source::kPoints;
+  Stage stage = Stage::kIdle;
+  bool is_accepted = false;  ///< Device and model.
+  /// The error system with its peak, settling time and largest absolute error is there.
+  bool has_model = false;
+  /// Not for a T in which k moves more often than `AbsoluteError` takes samples.
+  bool has_absolute_error = false;
+  bool has_fit_draws = false;
+  bool has_energy = false;
+  bool has_bound = false;      ///< False where no upper bound passed its check.
+  bool is_bound_done = false;  ///< A bound was looked for: proven or given up.
+  bool has_monte_carlo = false;
+  bool has_trend = false;
+  std::size_t trace_count = 0;
+  std::size_t trend_count = 0;
+  Failure failure;
+  Device device;
+  double limit_mps2 = 0.0;  ///< a.
+  Peak peak;
+  SettlingTime settling_time;     ///< To 5 % of the peak.
+  double absolute_error_v = 0.0;  ///< The largest |y(t)| of any signal within +-a of this T.
+  double bound_v2s = 0.0;         ///< No signal within +-a of this T has more; with `has_bound`.
+  GuardResults guard;
+  AdaptiveResult adaptive;
+  Accelerometer device_at_maximum;               ///< Of the trial with the largest energy.
+  Trend trend;                                   ///< Energies in V^2 s.
+  WlspDrawsResult fit_draws;                     ///< With `has_fit_draws`.
+  TrialResults trials;                           ///< With `has_monte_carlo`.
+  TrendPoint trend_table[kMaxTrendPoints] = {};  ///< `trend_points()` is the part in use.
+  double trace_v2s[kTraceLength] = {};           ///< `trace()` is the part in use.
+  MaximumEnergy maximum;  ///< Its energy is for a = 1; `energy_v2s()` is the one to show.
+  ModalModel model;       ///< At the estimate.
+  Wlsp fit;               ///< Source::kPoints only.
+
+  /// Forgets everything but the settings, in place: nothing passes over the stack.
+  void clear() noexcept;
+  /// Forgets these parts of them.
+  void drop_trials() noexcept;
+  void drop_trend() noexcept;
+
+  bool done() const noexcept { return stage == Stage::kDone || stage == Stage::kFailed; }
+  Status status() const noexcept { return failure.status; }
+  bool has_fit() const noexcept { return is_accepted && source == Source::kPoints; }
+  bool has_uncertainty() const noexcept;
+
+  /// @returns Whether everything that this goal asks for is there and would come out the same with
+  /// these settings. For kMonteCarlo and kTrend false where there are no trials and no times; for
+  /// kReport these are no part of it then.
+  bool holds(Goal goal, const Settings& wanted) const noexcept;
+  /// @returns Whether error system and energy would come out the same with these settings, so that
+  /// `Evaluation::pursue()` may go on from here.
+  bool holds_energy_of(const Settings& wanted) const noexcept;
+  /// @returns Whether they are those of this device, given by its parameters.
+  bool is_of(const Device& other) const noexcept;
+  /// @returns Whether they are those of the device that these points give.
+  bool is_of(const FrequencyResponse& points) const noexcept;
+
+  /// @returns Element (i, j) of the covariance of S, f0 and beta: that of the fit, or the squares
+  /// of the given uncertainties on the diagonal.
+  double covariance(std::size_t i, std::size_t j) const noexcept;
+  /// @returns What the uncertainties are multiplied by for the trials: 1, or the Birge ratio.
+  double trial_scale(const Settings& wanted) const noexcept;
+  double trial_scale() const noexcept { return trial_scale(settings); }
+
+  double a2() const noexcept { return limit_mps2 * limit_mps2; }
+  double energy_v2s() const noexcept { return a2() * maximum.energy; }
+  /// @returns xi = E/(a^2 T), paper equation (7), in (V/(m/s^2))^2.
+  double xi() const noexcept { return maximum.energy / settings.duration_s; }
+  /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
+  double rms_error_v() const noexcept;
+  /// @returns The output y(t) for the signal found with its limit a, in V.
+  double output_v(double time_s) const noexcept {
+    return limit_mps2 * error_output(model, maximum.signal, time_s);
+  }
+  /// @returns E_0, E_1, ... of the fixed point in V^2 s; Method::kPaper only.
+  Span<const double> trace() const noexcept { return Span<const double>(trace_v2s, trace_count); }
+  Span<const TrendPoint> trend_points() const noexcept {
+    return Span<const TrendPoint>(trend_table, trend_count);
+  }
+
+ private:
+  // Defaults that are not zero would take flash for the whole object.
+  static constexpr Settings kNoSettings = {0,
+                                           0.0,
+                                           GainMode::kAuto,
+                                           0.0,
+                                           0.0,
+                                           false,
+                                           0.0,
+                                           Criterion::kIntegralSquareError,
+                                           {},
+                                           0.0,
+                                           0,
+                                           0,
+                                           false,
+                                           0.0,
+                                           {},
+                                           false,
+                                           {},
+                                           {},
+                                           {},
+                                           0};
+};
+
+static_assert(std::is_trivially_copyable_v<EvaluationResults>);
+
+}  // namespace emax::app

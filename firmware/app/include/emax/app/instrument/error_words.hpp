@@ -1,0 +1,31 @@
+// Why something is not done, as an error of the console.
+#pragma once
+
+#include <cstdint>
+
+#include "emax/app/scpi/error_code.hpp"
+#include "emax/app/sequencer/sequencer.hpp"
+#include "emax/app/settings/settings_error.hpp"
+#include "emax/base/status.hpp"
+
+namespace emax::app {
+
+/// An entry of the error queue; true if there is an error.
+struct ErrorWords {
+  scpi::ErrorCode code = scpi::ErrorCode::kNoError;
+  const char* words = nullptr;    ///< What to do, short enough for a line.
+  const char* subject = nullptr;  ///< What they are about; null if they say so.
+
+  explicit operator bool() const noexcept { return code != scpi::ErrorCode::kNoError; }
+};
+
+/// @returns What stands in the way of this sequencer, or how its last job has ended.
+ErrorWords words_of(const Refusal& refusal, const Sequencer& sequencer) noexcept;
+
+/// @returns Settings conflict, with the name of the setting; no error if there is none.
+ErrorWords words_of(const SettingsError& error) noexcept;
+
+/// @returns The bit of STATus:QUEStionable that a fault of a sweep sets.
+std::uint16_t questionable_of(Status fault) noexcept;
+
+}  // namespace emax::app

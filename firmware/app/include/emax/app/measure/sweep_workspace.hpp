@@ -1,0 +1,71 @@
+// The memory that a sweep works in.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "emax/app/measure/channel_monitor.hpp"
+#include "emax/app/measure/drive_oscillator.hpp"
+#include "emax/app/measure/silence_record.hpp"
+#include "emax/app/measure/sweep_budget.hpp"
+#include "emax/base/capacity.hpp"
+#include "emax/base/complex.hpp"
+#include "emax/hal/analog_stream.hpp"
+#include "emax/identify/frame_sine_fit.hpp"
+
+namespace emax::app {
+
+/// What a sweep needs only while it runs: 13 KiB that the caller lends it.
+///
+/// What it holds before a start and after the end does not matter, so it may share its memory with
+/// other work that never runs at the same time.
+class SweepWorkspace {
+ private:
+  friend class Sweep;
+
+  enum class Activity : std::uint8_t { kSilence, kSettling, kMeasuring, kRampingDown };
+
+  /// One frequency while it is measured.
+  struct Target {
+    double frequency_hz = 0.0;
+    double acceleration_mps2 = 0.0;
+    std::uint32_t repeat_frames = 0;
+    std::uint32_t tries = 0;
+    bool was_suspect = false;
+    bool was_overrange = false;
+    bool is_close = false;  // The level of this frequency has been seen.
+  };
+
+  void begin(const hal::StreamFormat& format) noexcept;
+
+  hal::StreamFormat format_;
+  DriveOscillator drive_;
+  ChannelMonitor reference_monitor_;
+  ChannelMonitor device_monitor_;
+  Target target_;
+  Complex last_ratio_;                   // Of the frequency before; zero if there was none.
+  double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
+  double level_scale_ = 0.0;             // 1; overrange halves it.
+  double first_reference_offset_v_ = 0.0;
+  double first_device_offset_v_ = 0.0;
+  double reference_rest2_ = 0.0;  // Sums of the squares of the repeats' residuals.
+  double device_rest2_ = 0.0;
+  std::uint32_t left_ = 0;         // Frames until this activity ends.
+  std::uint32_t settle_left_ = 0;  // When this few frames are left, the ramp has passed.
+  Activity activity_ = Activity::kSilence;
+  bool block_is_spent_ = false;  // A new drive was ordered: the rest of the block is of no use.
+  bool is_lowering_ = false;
+  FrameSineFit fit_;
+  Repeats repeats_;
+  SilenceRecord silence_;
+  std::array<PointScatter, kMaxPoints> scatter_ = {};
+  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
+  std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
+};
+
+static_assert(std::is_trivially_copyable_v<SweepWorkspace>);
+static_assert(!kHasDefaultCapacities || sizeof(SweepWorkspace) <= 13 * 1024);
+
+}  // namespace emax::app

@@ -1,0 +1,137 @@
+// What the results say of themselves: whose they are, and what they hold for.
+#include "emax/app/evaluate/evaluation_results.hpp"
+
+#include "emax/base/elementary.hpp"
+
+namespace emax::app {
+namespace {
+
+/// Whether so many bytes are the same.
+bool is_same_memory(const void* a, const void* b, std::size_t bytes) noexcept {
+  const auto* const first = static_cast<const unsigned char*>(a);
+  const auto* const second = static_cast<const unsigned char*>(b);
+  bool is_same = true;
+  for (std::size_t i = 0; is_same && i < bytes; ++i) {
+    is_same = first[i] == second[i];
+  }
+  return is_same;
+}
+
+/// Whether two tables of numbers are the same, bit for bit; no type here has gaps.
+template <typename T>
+bool is_same(Span<const T> a, Span<const T> b) noexcept {
+  return a.size() == b.size() && is_same_memory(a.data(), b.data(), a.size() * sizeof(T));
+}
+
+}  // namespace
+
+void TrialResults::take(const MonteCarlo& monte_carlo, const MonteCarloStore& store) noexcept {
+  static_assert(MonteCarlo::kBins % kHistogramRows == 0);
+  constexpr std::size_t kBinsPerRow = MonteCarlo::kBins / kHistogramRows;
+  result = monte_carlo.result();
+  const Span<const std::uint32_t> bins = monte_carlo.histogram(store);
+  for (std::size_t row = 0; row < kHistogramRows; ++row) {
+    rows[row] = 0;
+    for (std::size_t i = 0; i < kBinsPerRow && !bins.empty(); ++i) {
+      rows[row] += bins[row * kBinsPerRow + i];
+    }
+  }
+}
+
+// What has a flag is nothing without it.
+void EvaluationResults::clear() noexcept {
+  device = {};
+  limit_mps2 = 0.0;
+  absolute_error_v = 0.0;
+  emax::clear(maximum);
+  failure = {};
+  trace_count = 0;
+  source = Source::kPoints;
+  stage = Stage::kIdle;
+  is_accepted = false;
+  has_model = false;
+  has_absolute_error = false;
+  has_energy = false;
+  has_bound = false;
+  is_bound_done = false;
+  has_fit_draws = false;
+  drop_trials();
+  drop_trend();
+}
+
+void EvaluationResults::drop_trials() noexcept {
+  guard = {};
+  has_monte_carlo = false;
+}
+
+void EvaluationResults::drop_trend() noexcept {
+  trend_count = 0;
+  has_trend = false;
+}
+
+bool EvaluationResults::has_uncertainty() const noexcept {
+  const ParameterBox& u = device.u;
+  return u.sensitivity != 0.0 || u.natural_frequency_hz != 0.0 || u.damping != 0.0;
+}
+
+bool EvaluationResults::holds_energy_of(const Settings& wanted) const noexcept {
+  return is_accepted && is_same_energy(settings, wanted);
+}
+
+bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept {
+  if (!has_model || !holds_energy_of(wanted)) {
+    return false;
+  }
+  const bool holds_energy = has_energy && is_bound_done;
+  const bool holds_trials = has_monte_carlo && is_same_trials(settings, wanted);
+  const bool holds_trend = has_trend && is_same_trend(settings, wanted);
+  const bool holds_draws = has_fit_draws && is_same_random(settings, wanted);
+  switch (goal) {
+    case Goal::kModel:
+      return true;
+    case Goal::kEnergy:
+      return holds_energy;
+    case Goal::kMonteCarlo:
+      return holds_energy && holds_trials;
+    case Goal::kTrend:
+      return holds_energy && holds_trend;
+    case Goal::kReport:
+      return holds_energy && (holds_trials || !has_uncertainty()) &&
+             (holds_trend || wanted.trend_count == 0) && (holds_draws || source == Source::kModel);
+  }
+  return false;
+}
+
+bool EvaluationResults::is_of(const Device& other) const noexcept {
+  return is_accepted && source == Source::kModel && is_same_memory(&device, &other, sizeof device);
+}
+
+bool EvaluationResults::is_of(const FrequencyResponse& points) const noexcept {
+  const FrequencyResponse& own = fit.response();
+  return has_fit() && is_same(own.points(), points.points()) &&
+         is_same(own.common(), points.common());
+}
+
+double EvaluationResults::covariance(std::size_t i, std::size_t j) const noexcept {
+  if (source == Source::kPoints) {
+    return fit.result().covariance[i][j];
+  }
+  if (i != j) {
+    return 0.0;
+  }
+  const double u = i == 0   ? device.u.sensitivity
+                   : i == 1 ? device.u.natural_frequency_hz
+                            : device.u.damping;
+  return u * u;
+}
+
+double EvaluationResults::trial_scale(const Settings& wanted) const noexcept {
+  const double ratio = source == Source::kPoints ? fit.result().birge_ratio : 1.0;
+  return wanted.birge && ratio > 1.0 ? ratio : 1.0;
+}
+
+double EvaluationResults::rms_error_v() const noexcept {
+  return sqrt(energy_v2s() / settings.duration_s);
+}
+
+}  // namespace emax::app

@@ -1,0 +1,36 @@
+// The names of the stages.
+#include "emax/app/evaluate/stage.hpp"
+
+namespace emax::app {
+
+const char* name_of(Stage stage) noexcept {
+  switch (stage) {
+    case Stage::kIdle:
+      return "idle";
+    case Stage::kModel:
+      return "response";
+    case Stage::kFitDraws:
+      return "fit";
+    case Stage::kEnergy:
+      return "energy";
+    case Stage::kBound:
+      return "bound";
+    case Stage::kPrediction:
+      return "prediction";
+    case Stage::kAdaptive:
+      return "number of trials";
+    case Stage::kMonteCarlo:
+      return "Monte Carlo";
+    case Stage::kGuard:
+      return "guard";
+    case Stage::kTrend:
+      return "trend";
+    case Stage::kDone:
+      return "done";
+    case Stage::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+}  // namespace emax::app

@@ -1,0 +1,30 @@
+// How far a sweep is, and its points as a table for the fit.
+#include "emax/app/measure/sweep_results.hpp"
+
+namespace emax::app {
+
+double SweepResults::progress() const noexcept {
+  if (stage == SweepStage::kDone) {
+    return 1.0;
+  }
+  const double all = static_cast<double>(settings.frequency_count) + 2.0;
+  const double checks = check_before.re == 0.0 && check_before.im == 0.0 ? 0.0 : 1.0;
+  return (static_cast<double>(point_count) + checks) / all;
+}
+
+Status SweepResults::copy_to(FrequencyResponse& response) const noexcept {
+  response.clear();
+  if (stage != SweepStage::kDone && stage != SweepStage::kFailed) {
+    return Status::kNotRunning;
+  }
+  for (const SweepPoint& point : points()) {
+    const Status added = response.add(point.point);
+    if (added != Status::kOk) {
+      response.clear();
+      return added;
+    }
+  }
+  return response.set_common(common.total);
+}
+
+}  // namespace emax::app
