@@ -26,6 +26,11 @@ constexpr std::size_t kWorkOfRefinement = 96;
 /// What the energy of a pulse costs, and how much of that is done at once.
 constexpr std::size_t kWorkOfPulse = 12;
 constexpr std::size_t kWorkOfPulses = 512;
+/// Cells of the table that are filled at once, and what one of them costs.
+constexpr std::size_t kTableStretch = 256;
+constexpr std::size_t kCellsPerTableCell = 4;
+/// What a cell of a product in double precision costs where it is not in hardware.
+constexpr std::size_t kSinglesPerDouble = 32;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
 /// What each pattern may take of them, whatever the capacity, so that it changes no pattern.
 constexpr std::uint64_t kNumbersPerPattern = 8192;
@@ -39,6 +44,20 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
   }
   const double whole = floor(cells);
   return static_cast<std::size_t>(whole) + (cells - whole > 1e-9 * cells ? 1u : 0u);
+}
+
+/// A number that other patterns hardly have, the same for all signs turned (FNV-1a).
+std::uint32_t mark(Signs signs) noexcept {
+  const std::uint32_t turn = signs.is_positive(0) ? 0 : ~std::uint32_t{0};
+  std::uint32_t hash = 2166136261U;
+  for (std::size_t cell = 0; cell < signs.size(); cell += Signs::kBits) {
+    const std::size_t count = signs.size() - cell;
+    const std::uint32_t used =
+        count < Signs::kBits ? ~std::uint32_t{0} >> (Signs::kBits - count) : ~std::uint32_t{0};
+    hash = (hash ^ ((signs.word(cell / Signs::kBits) ^ turn) & used)) * 16777619U;
+    hash ^= hash >> 15;
+  }
+  return hash;
 }
 
 }  // namespace
@@ -145,7 +164,9 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   trace_count_ = 0;
   unstorable_energy_ = -std::numeric_limits<double>::infinity();
   climbs_made_ = 0;
-  climbs_ = paper ? 1 : kStarts + kPolishings;
+  starts_ = model.criterion() == Criterion::kEnergyDifference ? kMaxStarts : kStarts;
+  climbs_ = paper ? 1 : starts_ + kPolishings;
+  table_filled_ = 0;
   phase_ = Phase::kStart;
   has_result_ = false;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
@@ -162,10 +183,19 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
   if (done()) {
     return Status::kOk;
   }
-  PhiOperator phi;
-  (void)phi.set(model, settings_.duration_s, cells_);  // `start()` has seen that both are valid.
   for (std::size_t work = 0; work < kWorkPerStep && !done();) {
-    work += step_once(phi, model, workspace, trace);
+    if (phase_ == Phase::kGridClimb) {
+      work += step_in_single_precision(workspace);
+    } else if (phase_ == Phase::kRefine) {
+      work += step_refinement(model, workspace);
+    } else {
+      PhiOperator phi;
+      (void)phi.set(model, settings_.duration_s, cells_);  // `start()` has seen that both are valid.
+      while (work < kWorkPerStep && !done() && phase_ != Phase::kGridClimb &&
+             phase_ != Phase::kRefine) {
+        work += step_once(phi, model, workspace, trace);
+      }
+    }
   }
   // A signal with more switches than the table holds must not be passed over in silence if it beats
   // all others.
@@ -179,7 +209,9 @@ std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& mo
   switch (phase_) {
     case Phase::kStart:
       begin_climb(phi, workspace);
-      return cells_;
+      return cells_ / 4;
+    case Phase::kTable:
+      return fill_table(phi, model, workspace);
     case Phase::kClimb:
       fixed_point_.step(phi, workspace.signs(cells_), workspace.best_signs(cells_),
                         workspace.product(cells_), trace);
@@ -189,23 +221,89 @@ std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& mo
       return cells_;
     case Phase::kTurn:
       return step_turn(phi, model, workspace);
+    case Phase::kGridClimb:
     case Phase::kRefine:
-      refiner_.step(model, workspace.signal(), workspace.refinement());
-      if (refiner_.done()) {
-        end_refinement(workspace.signal());
-      }
-      return kWorkOfRefinement * (workspace.signal().count() + 1);
+      break;
   }
   return 0;
 }
 
-/// The start of the climb that comes next.
-void EnergySearch::set_start(const PhiOperator& phi, Signs signs, Span<double> product) noexcept {
-  std::size_t index = climbs_made_;
-  if (settings_.method == Method::kPaper) {
-    signs_of_column(phi, 0, signs, product);
-    return;
+/// A stretch of a climb, of about a hundredth of what a step may cost.
+std::size_t EnergySearch::step_in_single_precision(GridWorkspace& workspace) noexcept {
+  std::size_t work = 0;
+  while (!grid_climb_.done() && work < kSinglesPerDouble * 8) {
+    work += grid_climb_.step(float_phi_, table(workspace), workspace.signs(cells_),
+                             workspace.best_signs(cells_), product(workspace));
   }
+  if (grid_climb_.done()) {
+    end_grid_climb(workspace);
+  }
+  return work / kSinglesPerDouble + 1;
+}
+
+std::size_t EnergySearch::step_refinement(const ModalModel& model,
+                                          GridWorkspace& workspace) noexcept {
+  refiner_.step(model, workspace.signal(), workspace.refinement());
+  const std::size_t work = kWorkOfRefinement * (workspace.signal().count() + 1);
+  if (refiner_.done()) {
+    end_refinement(workspace.signal());
+  }
+  return work;
+}
+
+/// The table lies at the end of the workspace: there it outlives a refinement if the cells are not
+/// too many.
+Span<float> EnergySearch::table(GridWorkspace& workspace) const noexcept {
+  const Span<float> all = workspace.singles();
+  return all.from(all.size() - cells_);
+}
+
+Span<float> EnergySearch::product(GridWorkspace& workspace) const noexcept {
+  return workspace.singles().first(cells_);
+}
+
+std::size_t EnergySearch::fill_table(const PhiOperator& phi, const ModalModel& model,
+                                     GridWorkspace& workspace) noexcept {
+  if (table_filled_ == 0) {
+    float_phi_.set(model, phi);
+  }
+  const std::size_t left = cells_ - table_filled_;
+  const std::size_t count = left < kTableStretch ? left : kTableStretch;
+  float_phi_.fill_table(phi, table_filled_, table_filled_ + count, table(workspace));
+  table_filled_ += count;
+  if (table_filled_ == cells_) {
+    phase_ = Phase::kStart;
+  }
+  return count / kCellsPerTableCell + 1;
+}
+
+/// The signs of a column of Phi.
+void EnergySearch::set_to_column(std::size_t cell, GridWorkspace& workspace) const noexcept {
+  const Span<float> column = product(workspace);
+  for (float& value : column) {
+    value = 0.0F;
+  }
+  FloatPhi::End at_end;
+  float_phi_.add_stretch(cell, cell + 1, 1.0F, table(workspace), column, at_end);
+  float_phi_.add_end(at_end, column);
+  const Signs signs = workspace.signs(cells_);
+  for (std::size_t i = 0; i < cells_; ++i) {
+    signs.set(i, !(column[i] < 0.0F));
+  }
+}
+
+void EnergySearch::set_to_half_periods(double half_period_s, Signs signs) const noexcept {
+  const double cell_s = settings_.duration_s / static_cast<double>(cells_);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const double half = 0.5 * floor((static_cast<double>(i) + 0.5) * cell_s / half_period_s);
+    signs.set(i, half == floor(half));
+  }
+}
+
+/// The start of the climb that comes next.
+void EnergySearch::set_start(GridWorkspace& workspace) noexcept {
+  const Signs signs = workspace.signs(cells_);
+  std::size_t index = climbs_made_;
   if (index == 0) {
     for (std::size_t i = 0; i < signs.size(); ++i) {
       signs.set(i, true);
@@ -214,20 +312,16 @@ void EnergySearch::set_start(const PhiOperator& phi, Signs signs, Span<double> p
   }
   index -= 1;
   if (index < kColumnStarts) {
-    signs_of_column(phi, index * cells_ / kColumnStarts, signs, product);
+    set_to_column(index * cells_ / kColumnStarts, workspace);
     return;
   }
   index -= kColumnStarts;
   if (index < kHalfPeriods) {
     // Half-periods in equal ratios from the shortest to T.
     const double part = static_cast<double>(index) / (kHalfPeriods - 1.0);
-    const double half_period_s =
-        shortest_half_period_s_ * exp(part * log(settings_.duration_s / shortest_half_period_s_));
-    const double cell_s = settings_.duration_s / static_cast<double>(cells_);
-    for (std::size_t i = 0; i < signs.size(); ++i) {
-      const double half = 0.5 * floor((static_cast<double>(i) + 0.5) * cell_s / half_period_s);
-      signs.set(i, half == floor(half));
-    }
+    set_to_half_periods(shortest_half_period_s_ *
+                            exp(part * log(settings_.duration_s / shortest_half_period_s_)),
+                        signs);
     return;
   }
   index -= kHalfPeriods;
@@ -253,15 +347,28 @@ void EnergySearch::set_to_result(Signs signs) const noexcept {
 }
 
 void EnergySearch::begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept {
+  const bool paper = settings_.method == Method::kPaper;
+  if (!paper && !is_polishing() && table_filled_ != cells_) {
+    workspace.share_nothing();
+    phase_ = Phase::kTable;
+    return;
+  }
   turns_ = 0;
-  workspace.share_nothing();
   if (is_polishing()) {
     set_to_result(workspace.signs(cells_));
-  } else {
-    ++result_.starts;
-    set_start(phi, workspace.signs(cells_), workspace.product(cells_));
+    run_fixed_point();
+    return;
   }
-  run_fixed_point();
+  ++result_.starts;
+  if (paper) {
+    workspace.share_nothing();
+    signs_of_column(phi, 0, workspace.signs(cells_), workspace.product(cells_));
+    run_fixed_point();
+    return;
+  }
+  set_start(workspace);
+  grid_climb_.start(static_cast<float>(shift_ / float_phi_.scale()));
+  phase_ = Phase::kGridClimb;
 }
 
 void EnergySearch::run_fixed_point() noexcept {
@@ -274,7 +381,7 @@ void EnergySearch::run_fixed_point() noexcept {
 void EnergySearch::end_fixed_point(std::size_t room) noexcept {
   const FixedPointResult& run = fixed_point_.result();
   trace_count_ = run.iterations + 1 < room ? run.iterations + 1 : room;
-  climb_energy_ = run.energy;
+  end_ = {run.energy, 0};
   if (turns_ == 0) {
     iterations_ = run.iterations;
     at_rest_ = run.at_rest;
@@ -304,13 +411,30 @@ std::size_t EnergySearch::step_turn(const PhiOperator& phi, const ModalModel& mo
   return work;
 }
 
+void EnergySearch::end_grid_climb(GridWorkspace& workspace) noexcept {
+  end_ = {float_phi_.scale() * grid_climb_.energy(), mark(workspace.signs(cells_))};
+  iterations_ = grid_climb_.iterations();
+  at_rest_ = grid_climb_.at_rest();
+  SwitchingSignal& candidate = workspace.signal();
+  if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
+    unstorable_energy_ = end_.energy > unstorable_energy_ ? end_.energy : unstorable_energy_;
+  } else if (is_worth_refining()) {
+    const std::size_t room = workspace.singles().size() - 2 * kRefinementScratch;
+    table_filled_ = cells_ <= room ? table_filled_ : 0;
+    refiner_.start(candidate);
+    phase_ = Phase::kRefine;
+    return;
+  }
+  next_climb();
+}
+
 void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept {
   SwitchingSignal& candidate = workspace.signal();
   if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
-    unstorable_energy_ = climb_energy_ > unstorable_energy_ ? climb_energy_ : unstorable_energy_;
+    unstorable_energy_ = end_.energy > unstorable_energy_ ? end_.energy : unstorable_energy_;
   } else if (settings_.method == Method::kPaper) {
     take(candidate, energy(model, candidate));
-  } else if (is_polishing() || is_worth_refining(climb_energy_)) {
+  } else {
     refiner_.start(candidate);
     phase_ = Phase::kRefine;
     return;
@@ -330,26 +454,26 @@ void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
 
 void EnergySearch::next_climb() noexcept {
   if (!is_polishing()) {
-    ends_[climbs_made_] = climb_energy_;
+    ends_[climbs_made_] = end_;
   }
   ++climbs_made_;
   // Nothing to polish.
-  if (climbs_made_ == kStarts && !has_result_) {
+  if (climbs_made_ == starts_ && !has_result_) {
     climbs_made_ = climbs_;
   }
   phase_ = Phase::kStart;
 }
 
-/// Whether the end of a climb is near the highest so far, and not that of an earlier climb.
-bool EnergySearch::is_worth_refining(double energy) const noexcept {
-  double highest = energy;
-  for (const double end : Span<const double>(ends_).first(climbs_made_)) {
-    if (abs(energy - end) <= kSame * abs(energy)) {
+/// Whether the end of this climb is near the highest so far, and not that of an earlier climb.
+bool EnergySearch::is_worth_refining() const noexcept {
+  double highest = end_.energy;
+  for (const End& end : Span<const End>(ends_).first(climbs_made_)) {
+    if (end.pattern == end_.pattern && end.energy == end_.energy) {
       return false;
     }
-    highest = end > highest ? end : highest;
+    highest = end.energy > highest ? end.energy : highest;
   }
-  return !has_result_ || energy >= highest - kWorthRefining * abs(highest);
+  return !has_result_ || end_.energy >= highest - kWorthRefining * abs(highest);
 }
 
 /// Makes a signal the result if it is better.
@@ -360,7 +484,7 @@ void EnergySearch::take(const SwitchingSignal& signal, double energy) noexcept {
   has_result_ = true;
   result_.energy = energy;
   result_.signal = signal;
-  if (climbs_made_ < kStarts) {
+  if (!is_polishing()) {
     result_.iterations = iterations_;
     result_.at_rest = at_rest_;
   }

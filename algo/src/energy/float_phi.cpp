@@ -1,0 +1,277 @@
+// Phi in single precision: products from scratch, and by the stretches that change.
+#include "emax/energy/float_phi.hpp"
+
+#include <cstdint>
+
+#include "emax/base/complex_exp.hpp"
+#include "emax/base/elementary.hpp"
+
+namespace emax {
+namespace {
+
+/// Below this part of the diagonal, what the end of the record takes away is left out.
+constexpr float kNegligible = 1e-7F;
+/// What is left at T below this is nothing, before it leaves the range of `float`.
+constexpr float kNothing = 1e-20F;
+/// Cells between two looks at whether it is.
+constexpr std::size_t kCellsPerLook = 16;
+
+FloatComplex single(Complex z) noexcept {
+  return {static_cast<float>(z.re), static_cast<float>(z.im)};
+}
+FloatComplex operator+(FloatComplex a, FloatComplex b) noexcept {
+  return {a.re + b.re, a.im + b.im};
+}
+FloatComplex operator*(FloatComplex a, FloatComplex b) noexcept {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+FloatComplex operator*(float s, FloatComplex a) noexcept { return {s * a.re, s * a.im}; }
+/// Re(a b).
+float real_of_product(FloatComplex a, FloatComplex b) noexcept {
+  return a.re * b.re - a.im * b.im;
+}
+float size(FloatComplex z) noexcept {
+  return (z.re < 0.0F ? -z.re : z.re) + (z.im < 0.0F ? -z.im : z.im);
+}
+
+}  // namespace
+
+void FloatPhi::set(const ModalModel& model, const PhiOperator& phi) noexcept {
+  cells_ = phi.cells();
+  count_ = model.modes().size();
+  const double diagonal = abs(phi.endless_diagonal());
+  scale_ = diagonal > phi.diagonal_limit() ? diagonal : phi.diagonal_limit();
+  const double inverse = 1.0 / scale_;
+  const double inverse_root = sqrt(inverse);
+  std::size_t pair = 0;
+  for (std::size_t m = 0; m < count_; ++m) {
+    step_[m] = single(phi.step(m));
+    correlation_[m] = single(inverse * phi.correlation(m));
+    end_[m] = single(inverse_root * phi.end(m));
+    for (std::size_t i = 0; i <= m; ++i, ++pair) {
+      gramian_[pair] = single(model.gramian(i, m));
+      conjugate_gramian_[pair] = single(model.conjugate_gramian(i, m));
+    }
+  }
+  step_[count_] = {};
+  correlation_[count_] = {};
+  end_[count_] = {};
+  for (std::size_t width = 1; width <= kMaxPulse; ++width) {
+    endless_pulse_[width - 1] = static_cast<float>(inverse * phi.endless_pulse(width));
+    pulse_limit_[width - 1] = static_cast<float>(inverse * phi.pulse_limit(width));
+  }
+  greatest_pulse_limit_ = static_cast<float>(inverse * phi.greatest_pulse_limit());
+  endless_diagonal_ = static_cast<float>(inverse * phi.endless_diagonal());
+  edge_ = 0.0;
+}
+
+// At a distance of d cells behind an edge, a signal of +1 from there on and -1 before has the
+// Toeplitz part's diagonal and twice its elements at the distances 1 to d; before the edge the same
+// with the other sign. Two edges make a stretch.
+void FloatPhi::fill_table(const PhiOperator& phi, std::size_t begin, std::size_t end,
+                          Span<float> table) noexcept {
+  Complex term[kMaxModes];
+  const double inverse = 1.0 / scale_;
+  for (std::size_t m = 0; m < count_; ++m) {
+    term[m] = (2.0 * inverse) * (begin < 2 ? phi.correlation(m)
+                                           : phi.correlation(m) *
+                                                 power(phi.step(m), begin - 1));
+  }
+  std::size_t i = begin;
+  if (i == 0 && end != 0) {
+    edge_ = inverse * phi.endless_diagonal();
+    table[0] = static_cast<float>(edge_);
+    i = 1;
+  }
+  for (; i < end; ++i) {
+    for (std::size_t m = 0; m < count_; ++m) {
+      edge_ += term[m].re;
+      term[m] = phi.step(m) * term[m];
+    }
+    table[i] = static_cast<float>(edge_);
+  }
+}
+
+void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
+  for (std::size_t i = 0; i < cells_; ++i) {
+    product[i] = signs.is_positive(i) ? endless_diagonal_ : -endless_diagonal_;
+  }
+  End at_end;
+  // Two modes at a time, which with their states and factors fit into the registers.
+  for (std::size_t m = 0; m < count_; m += 2) {
+    const FloatComplex step[2] = {step_[m], step_[m + 1]};
+    const FloatComplex correlation[2] = {correlation_[m], correlation_[m + 1]};
+    FloatComplex first;
+    FloatComplex second;
+    for (std::size_t i = 0; i < cells_;) {
+      const float value = signs.is_positive(i) ? 1.0F : -1.0F;
+      for (const std::size_t stretch_end = signs.run_end(i); i < stretch_end; ++i) {
+        product[i] = product[i] + real_of_product(correlation[0], first) +
+                     real_of_product(correlation[1], second);
+        first = step[0] * first;
+        second = step[1] * second;
+        first.re += value;
+        second.re += value;
+      }
+    }
+    at_end.output[m] = end_[m] * first;
+    if (m + 1 < count_) {
+      at_end.output[m + 1] = end_[m + 1] * second;
+    }
+  }
+  FloatComplex back[kPlaces];
+  fill_back(at_end.output, back);
+  for (std::size_t m = 0; m < count_; m += 2) {
+    const FloatComplex step[2] = {step_[m], step_[m + 1]};
+    FloatComplex first = back[m];
+    FloatComplex second = back[m + 1];
+    for (std::size_t i = cells_; i != 0;) {
+      const std::size_t begin = signs.run_begin(i - 1);
+      const float value = signs.is_positive(begin) ? 1.0F : -1.0F;
+      const FloatComplex added[2] = {value * correlation_[m], value * correlation_[m + 1]};
+      while (i != begin) {
+        --i;
+        product[i] = product[i] + first.re + second.re;
+        first = step[0] * first + added[0];
+        second = step[1] * second + added[1];
+      }
+    }
+  }
+}
+
+/// What the cells from `begin` to before `end` leave in a mode's output at T: their sum of powers of
+/// the step by doubling, then as many more powers as there are cells behind them.
+FloatComplex FloatPhi::left_at_end(std::size_t mode, std::size_t begin,
+                                   std::size_t end) const noexcept {
+  const FloatComplex step = step_[mode];
+  const auto width = static_cast<std::uint32_t>(end - begin);
+  FloatComplex sum{1.0F, 0.0F};  // of the powers below those bits of the width that are seen
+  FloatComplex factor = step;    // step to that
+  for (std::uint32_t bit = (std::uint32_t{1} << (31 - __builtin_clz(width))) / 2; bit != 0;
+       bit /= 2) {
+    sum = sum + factor * sum;
+    factor = factor * factor;
+    if ((width & bit) != 0) {
+      sum = step * sum;
+      sum.re += 1.0F;
+      factor = step * factor;
+    }
+  }
+  FloatComplex square = step;
+  FloatComplex result = end_[mode] * sum;
+  for (std::size_t n = cells_ - end; n != 0; n /= 2) {
+    if (n % 2 != 0) {
+      result = square * result;
+      if (size(result) < kNothing) {
+        return {};
+      }
+    }
+    square = square * square;
+  }
+  return result;
+}
+
+void FloatPhi::add_stretch(std::size_t begin, std::size_t end, float sign, Span<const float> table,
+                           Span<float> product, End& at_end) const noexcept {
+  const float* first = table.data() + begin;
+  const float* second = table.data() + end;
+  float* y = product.data();
+  std::size_t i = 0;
+  for (; i < begin; ++i) {
+    --first;
+    --second;
+    y[i] += sign * (*second - *first);
+  }
+  for (; i < end; ++i) {
+    --second;
+    y[i] += sign * (*first + *second);
+    ++first;
+  }
+  for (; i < cells_; ++i) {
+    y[i] += sign * (*first - *second);
+    ++first;
+    ++second;
+  }
+  const float rise = 2.0F * sign;
+  for (std::size_t m = 0; m < count_; ++m) {
+    at_end.output[m] = at_end.output[m] + rise * left_at_end(m, begin, end);
+  }
+}
+
+/// end times 1/2 sum_j [G_ij output_j + H_ij conj output_j] for each mode i.
+void FloatPhi::fill_back(const FloatComplex* at_end, FloatComplex* back) const noexcept {
+  for (std::size_t m = 0; m < kPlaces; ++m) {
+    back[m] = {};
+  }
+  std::size_t pair = 0;
+  for (std::size_t j = 0; j < count_; ++j) {
+    const FloatComplex b = at_end[j];
+    for (std::size_t i = 0; i < j; ++i, ++pair) {
+      const FloatComplex g = gramian_[pair];
+      const FloatComplex h = conjugate_gramian_[pair];
+      const FloatComplex a = at_end[i];
+      back[i].re += (g.re + h.re) * b.re + (h.im - g.im) * b.im;
+      back[i].im += (g.im + h.im) * b.re + (g.re - h.re) * b.im;
+      // H_ji is the conjugate of H_ij.
+      back[j].re += (g.re + h.re) * a.re - (g.im + h.im) * a.im;
+      back[j].im += (g.im - h.im) * a.re + (g.re - h.re) * a.im;
+    }
+    const FloatComplex g = gramian_[pair];
+    const FloatComplex h = conjugate_gramian_[pair];
+    back[j].re += (g.re + h.re) * b.re + (h.im - g.im) * b.im;
+    back[j].im += (g.im + h.im) * b.re + (g.re - h.re) * b.im;
+    ++pair;
+  }
+  for (std::size_t m = 0; m < count_; ++m) {
+    back[m] = 0.5F * (end_[m] * back[m]);
+  }
+}
+
+void FloatPhi::add_end(const End& at_end, Span<float> product) const noexcept {
+  FloatComplex back[kPlaces];
+  fill_back(at_end.output, back);
+  for (std::size_t m = 0; m < count_; m += 2) {
+    const FloatComplex step[2] = {step_[m], step_[m + 1]};
+    FloatComplex first = back[m];
+    FloatComplex second = back[m + 1];
+    float* y = product.data() + cells_;
+    for (std::size_t left = cells_; left != 0;) {
+      if (size(first) + size(second) < kNegligible) {
+        break;
+      }
+      const std::size_t count = left < kCellsPerLook ? left : kCellsPerLook;
+      for (float* const stop = y - count; y != stop;) {
+        --y;
+        *y = *y + first.re + second.re;
+        first = step[0] * first;
+        second = step[1] * second;
+      }
+      left -= count;
+    }
+  }
+}
+
+float FloatPhi::pulse(std::size_t cell, std::size_t width) const noexcept {
+  FloatComplex at_end[kMaxModes];
+  for (std::size_t m = 0; m < count_; ++m) {
+    at_end[m] = left_at_end(m, cell, cell + width);
+  }
+  float form = 0.0F;
+  std::size_t pair = 0;
+  for (std::size_t j = 0; j < count_; ++j) {
+    const FloatComplex b = at_end[j];
+    for (std::size_t i = 0; i < j; ++i, ++pair) {
+      const FloatComplex g = gramian_[pair];
+      const FloatComplex h = conjugate_gramian_[pair];
+      form += at_end[i].re * ((g.re + h.re) * b.re + (h.im - g.im) * b.im) -
+              at_end[i].im * ((g.im + h.im) * b.re + (g.re - h.re) * b.im);
+    }
+    const FloatComplex g = gramian_[pair];
+    const float h = conjugate_gramian_[pair].re;
+    form += 0.5F * (real_of_product(g, b * b) + h * (b.re * b.re + b.im * b.im));
+    ++pair;
+  }
+  return endless_pulse_[width - 1] + form;
+}
+
+}  // namespace emax
