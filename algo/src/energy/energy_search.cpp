@@ -18,7 +18,7 @@ constexpr std::size_t kMaxTurns = 1000;
 /// Of the energy: a smaller gain of a pulse is left to the refinement.
 constexpr double kSmallestGain = 1e-9;
 /// A climb that ends this part below the highest one is not refined: refinement adds no more.
-constexpr double kWorthRefining = 0.01;
+constexpr float kWorthRefining = 0.01F;
 /// Energies that differ by less than this part are of the same signal.
 constexpr double kSame = 1e-11;
 /// What a step of a refinement costs for each switch, in cells of a product.
@@ -26,9 +26,9 @@ constexpr std::size_t kWorkOfRefinement = 96;
 /// What the energy of a pulse costs, and how much of that is done at once.
 constexpr std::size_t kWorkOfPulse = 12;
 constexpr std::size_t kWorkOfPulses = 512;
-/// Cells of the table that are filled at once, and what one of them costs.
+/// Cells of the tables that are filled at once, and what they cost.
 constexpr std::size_t kTableStretch = 256;
-constexpr std::size_t kCellsPerTableCell = 4;
+constexpr std::size_t kWorkOfTables = 192;
 /// What a cell of a product in double precision costs where it is not in hardware.
 constexpr std::size_t kSinglesPerDouble = 32;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
@@ -166,8 +166,9 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   climbs_made_ = 0;
   starts_ = model.criterion() == Criterion::kEnergyDifference ? kMaxStarts : kStarts;
   climbs_ = paper ? 1 : starts_ + kPolishings;
-  table_filled_ = 0;
-  phase_ = Phase::kStart;
+  tables_filled_ = 0;
+  modes_ = model.modes().size();
+  phase_ = paper ? Phase::kPaperStart : Phase::kStart;
   has_result_ = false;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
   shortest_half_period_s_ = 0.5 / model.device().natural_frequency_hz;
@@ -184,17 +185,15 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
     return Status::kOk;
   }
   for (std::size_t work = 0; work < kWorkPerStep && !done();) {
-    if (phase_ == Phase::kGridClimb) {
-      work += step_in_single_precision(workspace);
-    } else if (phase_ == Phase::kRefine) {
-      work += step_refinement(model, workspace);
-    } else {
+    if (needs_operator()) {
       PhiOperator phi;
-      (void)phi.set(model, settings_.duration_s, cells_);  // `start()` has seen that both are valid.
-      while (work < kWorkPerStep && !done() && phase_ != Phase::kGridClimb &&
-             phase_ != Phase::kRefine) {
-        work += step_once(phi, model, workspace, trace);
+      (void)phi.set(model, settings_.duration_s,
+                    cells_);  // `start()` has seen that both are valid.
+      while (work < kWorkPerStep && !done() && needs_operator()) {
+        work += step_with_operator(phi, model, workspace, trace);
       }
+    } else {
+      work += step_without_operator(model, workspace);
     }
   }
   // A signal with more switches than the table holds must not be passed over in silence if it beats
@@ -204,14 +203,18 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
 }
 
 /// @returns What it has cost, in cells of a product.
-std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& model,
-                                    GridWorkspace& workspace, Span<double> trace) noexcept {
+std::size_t EnergySearch::step_with_operator(const PhiOperator& phi, const ModalModel& model,
+                                             GridWorkspace& workspace,
+                                             Span<double> trace) noexcept {
   switch (phase_) {
-    case Phase::kStart:
-      begin_climb(phi, workspace);
-      return cells_ / 4;
-    case Phase::kTable:
-      return fill_table(phi, model, workspace);
+    case Phase::kPaperStart:
+      workspace.share_nothing();
+      ++result_.starts;
+      signs_of_column(phi, 0, workspace.signs(cells_), workspace.product(cells_));
+      run_fixed_point();
+      return cells_;
+    case Phase::kTables:
+      return fill_tables(phi, model, workspace);
     case Phase::kClimb:
       fixed_point_.step(phi, workspace.signs(cells_), workspace.best_signs(cells_),
                         workspace.product(cells_), trace);
@@ -221,6 +224,7 @@ std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& mo
       return cells_;
     case Phase::kTurn:
       return step_turn(phi, model, workspace);
+    case Phase::kStart:
     case Phase::kGridClimb:
     case Phase::kRefine:
       break;
@@ -228,12 +232,28 @@ std::size_t EnergySearch::step_once(const PhiOperator& phi, const ModalModel& mo
   return 0;
 }
 
+/// Whether the phase computes with Phi in double precision.
+bool EnergySearch::needs_operator() const noexcept {
+  return phase_ != Phase::kStart && phase_ != Phase::kGridClimb && phase_ != Phase::kRefine;
+}
+
+std::size_t EnergySearch::step_without_operator(const ModalModel& model,
+                                                GridWorkspace& workspace) noexcept {
+  if (phase_ == Phase::kStart) {
+    begin_climb(workspace);
+    return cells_ / 4;
+  }
+  return phase_ == Phase::kGridClimb ? step_grid_climb(workspace)
+                                     : step_refinement(model, workspace);
+}
+
 /// A stretch of a climb, of about a hundredth of what a step may cost.
-std::size_t EnergySearch::step_in_single_precision(GridWorkspace& workspace) noexcept {
+std::size_t EnergySearch::step_grid_climb(GridWorkspace& workspace) noexcept {
   std::size_t work = 0;
   while (!grid_climb_.done() && work < kSinglesPerDouble * 8) {
-    work += grid_climb_.step(float_phi_, table(workspace), workspace.signs(cells_),
-                             workspace.best_signs(cells_), product(workspace));
+    work +=
+        grid_climb_.step(float_phi_, table(workspace), pulses(workspace), workspace.signs(cells_),
+                         workspace.best_signs(cells_), product(workspace));
   }
   if (grid_climb_.done()) {
     end_grid_climb(workspace);
@@ -251,30 +271,43 @@ std::size_t EnergySearch::step_refinement(const ModalModel& model,
   return work;
 }
 
-/// The table lies at the end of the workspace: there it outlives a refinement if the cells are not
-/// too many.
+/// The tables lie at the end of the workspace, where they outlive refinements of signals with not
+/// too many switches: that of `FloatPhi::add_stretch()`, and before it the energies of pulses if
+/// there is room for them.
 Span<float> EnergySearch::table(GridWorkspace& workspace) const noexcept {
   const Span<float> all = workspace.singles();
   return all.from(all.size() - cells_);
+}
+
+Span<float> EnergySearch::pulses(GridWorkspace& workspace) const noexcept {
+  const Span<float> all = workspace.singles();
+  const std::size_t size = FloatPhi::kMaxPulse * cells_;
+  const bool is_room = size + 2 * cells_ <= all.size() / 4 * 3;
+  return is_room ? all.from(all.size() - cells_ - size).first(size) : Span<float>();
 }
 
 Span<float> EnergySearch::product(GridWorkspace& workspace) const noexcept {
   return workspace.singles().first(cells_);
 }
 
-std::size_t EnergySearch::fill_table(const PhiOperator& phi, const ModalModel& model,
-                                     GridWorkspace& workspace) noexcept {
-  if (table_filled_ == 0) {
+std::size_t EnergySearch::fill_tables(const PhiOperator& phi, const ModalModel& model,
+                                      GridWorkspace& workspace) noexcept {
+  if (tables_filled_ == 0) {
     float_phi_.set(model, phi);
   }
-  const std::size_t left = cells_ - table_filled_;
-  const std::size_t count = left < kTableStretch ? left : kTableStretch;
-  float_phi_.fill_table(phi, table_filled_, table_filled_ + count, table(workspace));
-  table_filled_ += count;
-  if (table_filled_ == cells_) {
+  const std::size_t left = cells_ - tables_filled_;
+  const std::size_t end = tables_filled_ + (left < kTableStretch ? left : kTableStretch);
+  float_phi_.fill_table(phi, tables_filled_, end, table(workspace));
+  const Span<float> energies = pulses(workspace);
+  for (std::size_t cell = tables_filled_; cell < end && !energies.empty(); ++cell) {
+    float_phi_.fill_pulses(cell,
+                           energies.from(FloatPhi::kMaxPulse * cell).first(FloatPhi::kMaxPulse));
+  }
+  tables_filled_ = end;
+  if (end == cells_) {
     phase_ = Phase::kStart;
   }
-  return count / kCellsPerTableCell + 1;
+  return kWorkOfTables;
 }
 
 /// The signs of a column of Phi.
@@ -319,9 +352,9 @@ void EnergySearch::set_start(GridWorkspace& workspace) noexcept {
   if (index < kHalfPeriods) {
     // Half-periods in equal ratios from the shortest to T.
     const double part = static_cast<double>(index) / (kHalfPeriods - 1.0);
-    set_to_half_periods(shortest_half_period_s_ *
-                            exp(part * log(settings_.duration_s / shortest_half_period_s_)),
-                        signs);
+    set_to_half_periods(
+        shortest_half_period_s_ * exp(part * log(settings_.duration_s / shortest_half_period_s_)),
+        signs);
     return;
   }
   index -= kHalfPeriods;
@@ -346,26 +379,19 @@ void EnergySearch::set_to_result(Signs signs) const noexcept {
   }
 }
 
-void EnergySearch::begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept {
-  const bool paper = settings_.method == Method::kPaper;
-  if (!paper && !is_polishing() && table_filled_ != cells_) {
-    workspace.share_nothing();
-    phase_ = Phase::kTable;
-    return;
-  }
+void EnergySearch::begin_climb(GridWorkspace& workspace) noexcept {
   turns_ = 0;
   if (is_polishing()) {
     set_to_result(workspace.signs(cells_));
     run_fixed_point();
     return;
   }
-  ++result_.starts;
-  if (paper) {
+  if (tables_filled_ != cells_) {
     workspace.share_nothing();
-    signs_of_column(phi, 0, workspace.signs(cells_), workspace.product(cells_));
-    run_fixed_point();
+    phase_ = Phase::kTables;
     return;
   }
+  ++result_.starts;
   set_start(workspace);
   grid_climb_.start(static_cast<float>(shift_ / float_phi_.scale()));
   phase_ = Phase::kGridClimb;
@@ -381,7 +407,7 @@ void EnergySearch::run_fixed_point() noexcept {
 void EnergySearch::end_fixed_point(std::size_t room) noexcept {
   const FixedPointResult& run = fixed_point_.result();
   trace_count_ = run.iterations + 1 < room ? run.iterations + 1 : room;
-  end_ = {run.energy, 0};
+  climb_energy_ = run.energy;
   if (turns_ == 0) {
     iterations_ = run.iterations;
     at_rest_ = run.at_rest;
@@ -412,15 +438,17 @@ std::size_t EnergySearch::step_turn(const PhiOperator& phi, const ModalModel& mo
 }
 
 void EnergySearch::end_grid_climb(GridWorkspace& workspace) noexcept {
-  end_ = {float_phi_.scale() * grid_climb_.energy(), mark(workspace.signs(cells_))};
+  end_ = {static_cast<float>(grid_climb_.energy()), mark(workspace.signs(cells_))};
+  climb_energy_ = float_phi_.scale() * grid_climb_.energy();
   iterations_ = grid_climb_.iterations();
   at_rest_ = grid_climb_.at_rest();
   SwitchingSignal& candidate = workspace.signal();
   if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
-    unstorable_energy_ = end_.energy > unstorable_energy_ ? end_.energy : unstorable_energy_;
+    unstorable_energy_ = climb_energy_ > unstorable_energy_ ? climb_energy_ : unstorable_energy_;
   } else if (is_worth_refining()) {
-    const std::size_t room = workspace.singles().size() - 2 * kRefinementScratch;
-    table_filled_ = cells_ <= room ? table_filled_ : 0;
+    const std::size_t used = 2 * refinement_scratch(modes_, candidate.count());
+    const std::size_t kept = cells_ + pulses(workspace).size();
+    tables_filled_ = used + kept <= workspace.singles().size() ? tables_filled_ : 0;
     refiner_.start(candidate);
     phase_ = Phase::kRefine;
     return;
@@ -431,7 +459,7 @@ void EnergySearch::end_grid_climb(GridWorkspace& workspace) noexcept {
 void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept {
   SwitchingSignal& candidate = workspace.signal();
   if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
-    unstorable_energy_ = end_.energy > unstorable_energy_ ? end_.energy : unstorable_energy_;
+    unstorable_energy_ = climb_energy_ > unstorable_energy_ ? climb_energy_ : unstorable_energy_;
   } else if (settings_.method == Method::kPaper) {
     take(candidate, energy(model, candidate));
   } else {
@@ -466,14 +494,15 @@ void EnergySearch::next_climb() noexcept {
 
 /// Whether the end of this climb is near the highest so far, and not that of an earlier climb.
 bool EnergySearch::is_worth_refining() const noexcept {
-  double highest = end_.energy;
+  float highest = end_.energy;
   for (const End& end : Span<const End>(ends_).first(climbs_made_)) {
     if (end.pattern == end_.pattern && end.energy == end_.energy) {
       return false;
     }
     highest = end.energy > highest ? end.energy : highest;
   }
-  return !has_result_ || end_.energy >= highest - kWorthRefining * abs(highest);
+  const float part = kWorthRefining * (highest < 0.0F ? -highest : highest);
+  return !has_result_ || end_.energy >= highest - part;
 }
 
 /// Makes a signal the result if it is better.

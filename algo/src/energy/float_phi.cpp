@@ -10,7 +10,7 @@ namespace emax {
 namespace {
 
 /// Below this part of the diagonal, what the end of the record takes away is left out.
-constexpr float kNegligible = 1e-7F;
+constexpr float kNegligible = 5e-7F;
 /// What is left at T below this is nothing, before it leaves the range of `float`.
 constexpr float kNothing = 1e-20F;
 /// Cells between two looks at whether it is.
@@ -27,9 +27,7 @@ FloatComplex operator*(FloatComplex a, FloatComplex b) noexcept {
 }
 FloatComplex operator*(float s, FloatComplex a) noexcept { return {s * a.re, s * a.im}; }
 /// Re(a b).
-float real_of_product(FloatComplex a, FloatComplex b) noexcept {
-  return a.re * b.re - a.im * b.im;
-}
+float real_of_product(FloatComplex a, FloatComplex b) noexcept { return a.re * b.re - a.im * b.im; }
 float size(FloatComplex z) noexcept {
   return (z.re < 0.0F ? -z.re : z.re) + (z.im < 0.0F ? -z.im : z.im);
 }
@@ -53,14 +51,20 @@ void FloatPhi::set(const ModalModel& model, const PhiOperator& phi) noexcept {
       conjugate_gramian_[pair] = single(model.conjugate_gramian(i, m));
     }
   }
-  step_[count_] = {};
-  correlation_[count_] = {};
-  end_[count_] = {};
+  for (std::size_t m = count_; m < kPlaces; ++m) {
+    step_[m] = {};
+    correlation_[m] = {};
+    end_[m] = {};
+  }
+  greatest_limit_per_cell_ = 0.0F;
   for (std::size_t width = 1; width <= kMaxPulse; ++width) {
     endless_pulse_[width - 1] = static_cast<float>(inverse * phi.endless_pulse(width));
-    pulse_limit_[width - 1] = static_cast<float>(inverse * phi.pulse_limit(width));
+    const auto limit = static_cast<float>(inverse * phi.pulse_limit(width));
+    pulse_limit_[width - 1] = limit;
+    const float per_cell = limit / static_cast<float>(width);
+    greatest_limit_per_cell_ =
+        per_cell > greatest_limit_per_cell_ ? per_cell : greatest_limit_per_cell_;
   }
-  greatest_pulse_limit_ = static_cast<float>(inverse * phi.greatest_pulse_limit());
   endless_diagonal_ = static_cast<float>(inverse * phi.endless_diagonal());
   edge_ = 0.0;
 }
@@ -73,9 +77,8 @@ void FloatPhi::fill_table(const PhiOperator& phi, std::size_t begin, std::size_t
   Complex term[kMaxModes];
   const double inverse = 1.0 / scale_;
   for (std::size_t m = 0; m < count_; ++m) {
-    term[m] = (2.0 * inverse) * (begin < 2 ? phi.correlation(m)
-                                           : phi.correlation(m) *
-                                                 power(phi.step(m), begin - 1));
+    term[m] = (2.0 * inverse) *
+              (begin < 2 ? phi.correlation(m) : phi.correlation(m) * power(phi.step(m), begin - 1));
   }
   std::size_t i = begin;
   if (i == 0 && end != 0) {
@@ -139,8 +142,8 @@ void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
   }
 }
 
-/// What the cells from `begin` to before `end` leave in a mode's output at T: their sum of powers of
-/// the step by doubling, then as many more powers as there are cells behind them.
+/// What the cells from `begin` to before `end` leave in a mode's output at T: their sum of powers
+/// of the step by doubling, then as many more powers as there are cells behind them.
 FloatComplex FloatPhi::left_at_end(std::size_t mode, std::size_t begin,
                                    std::size_t end) const noexcept {
   const FloatComplex step = step_[mode];
@@ -230,32 +233,30 @@ void FloatPhi::fill_back(const FloatComplex* at_end, FloatComplex* back) const n
 void FloatPhi::add_end(const End& at_end, Span<float> product) const noexcept {
   FloatComplex back[kPlaces];
   fill_back(at_end.output, back);
-  for (std::size_t m = 0; m < count_; m += 2) {
-    const FloatComplex step[2] = {step_[m], step_[m + 1]};
+  // Three modes at a time: with their factors they fit into the registers of every processor.
+  for (std::size_t m = 0; m < count_; m += 3) {
+    const FloatComplex step[3] = {step_[m], step_[m + 1], step_[m + 2]};
     FloatComplex first = back[m];
     FloatComplex second = back[m + 1];
+    FloatComplex third = back[m + 2];
     float* y = product.data() + cells_;
-    for (std::size_t left = cells_; left != 0;) {
-      if (size(first) + size(second) < kNegligible) {
-        break;
-      }
+    std::size_t left = cells_;
+    while (left != 0 && size(first) + size(second) + size(third) > kNegligible) {
       const std::size_t count = left < kCellsPerLook ? left : kCellsPerLook;
       for (float* const stop = y - count; y != stop;) {
         --y;
-        *y = *y + first.re + second.re;
+        *y += first.re + second.re + third.re;
         first = step[0] * first;
         second = step[1] * second;
+        third = step[2] * third;
       }
       left -= count;
     }
   }
 }
 
-float FloatPhi::pulse(std::size_t cell, std::size_t width) const noexcept {
-  FloatComplex at_end[kMaxModes];
-  for (std::size_t m = 0; m < count_; ++m) {
-    at_end[m] = left_at_end(m, cell, cell + width);
-  }
+/// What the outputs of the modes at T still hold, with the sign of a Gramian.
+float FloatPhi::form(const FloatComplex* at_end) const noexcept {
   float form = 0.0F;
   std::size_t pair = 0;
   for (std::size_t j = 0; j < count_; ++j) {
@@ -271,7 +272,50 @@ float FloatPhi::pulse(std::size_t cell, std::size_t width) const noexcept {
     form += 0.5F * (real_of_product(g, b * b) + h * (b.re * b.re + b.im * b.im));
     ++pair;
   }
-  return endless_pulse_[width - 1] + form;
+  return form;
+}
+
+/// What each of the next cells, up to kMaxPulse, leaves in the modes' outputs at T.
+std::size_t FloatPhi::fill_left(std::size_t cell,
+                                FloatComplex (&left)[kMaxPulse][kMaxModes]) const noexcept {
+  const std::size_t count = cells_ - cell < kMaxPulse ? cells_ - cell : kMaxPulse;
+  for (std::size_t m = 0; m < count_; ++m) {
+    FloatComplex of_cell = left_at_end(m, cell + count - 1, cell + count);
+    for (std::size_t k = count; k-- > 0;) {
+      left[k][m] = of_cell;
+      of_cell = step_[m] * of_cell;
+    }
+  }
+  return count;
+}
+
+void FloatPhi::fill_pulses(std::size_t cell, Span<float> energies) const noexcept {
+  FloatComplex left[kMaxPulse][kMaxModes];
+  const std::size_t count = fill_left(cell, left);
+  FloatComplex at_end[kMaxModes];
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    energies[k] = 0.0F;
+    if (k < count) {
+      for (std::size_t m = 0; m < count_; ++m) {
+        at_end[m] = at_end[m] + left[k][m];
+      }
+      const float energy = endless_pulse_[k] + form(at_end);
+      energies[k] = energy < pulse_limit_[k] ? energy : pulse_limit_[k];
+    }
+  }
+}
+
+float FloatPhi::pulse(std::size_t cell, std::size_t width) const noexcept {
+  FloatComplex left[kMaxPulse][kMaxModes];
+  (void)fill_left(cell, left);
+  FloatComplex at_end[kMaxModes];
+  for (std::size_t m = 0; m < count_; ++m) {
+    for (std::size_t k = 0; k < width; ++k) {
+      at_end[m] = at_end[m] + left[k][m];
+    }
+  }
+  const float energy = endless_pulse_[width - 1] + form(at_end);
+  return energy < pulse_limit_[width - 1] ? energy : pulse_limit_[width - 1];
 }
 
 }  // namespace emax

@@ -28,6 +28,37 @@ std::size_t turned_end(Signs signs, Signs applied, std::size_t begin) noexcept {
   return same < run_end ? same : run_end;
 }
 
+/// Of the cells of a word: whose product is negative, and whose is beyond +-limit.
+struct Compared {
+  std::uint32_t negative = 0;
+  std::uint32_t beyond = 0;
+};
+
+Compared compare(std::size_t word, float limit, Span<const float> product) noexcept {
+  constexpr std::uint32_t kHighest = 0x80000000U;
+  const auto limit_bits = __builtin_bit_cast(std::uint32_t, limit);
+  const std::size_t first = Signs::kBits * word;
+  const std::size_t left = product.size() - first;
+  const std::size_t count = left < Signs::kBits ? left : Signs::kBits;
+  const float* const end = product.data() + first + count;
+  Compared result;
+  for (const float* value = end - count; value != end; ++value) {
+    const auto bits = __builtin_bit_cast(std::uint32_t, *value);
+    result.negative = result.negative >> 1 | (bits & kHighest);
+    result.beyond = result.beyond >> 1 | ((limit_bits - (bits & ~kHighest)) & kHighest);
+  }
+  result.negative >>= Signs::kBits - count;
+  result.beyond >>= Signs::kBits - count;
+  return result;
+}
+
+/// The cells of a word that hold at most `limit`: sign times product.
+std::uint32_t weakly_held(std::size_t word, float limit, Signs signs,
+                          Span<const float> product) noexcept {
+  const Compared compared = compare(word, limit, product);
+  return ~(compared.beyond & (compared.negative ^ signs.word(word)));
+}
+
 }  // namespace
 
 void GridClimb::start(float shift) noexcept {
@@ -36,8 +67,8 @@ void GridClimb::start(float shift) noexcept {
   phase_ = Phase::kProduct;
 }
 
-std::size_t GridClimb::step(const FloatPhi& phi, Span<const float> table, Signs signs,
-                            Signs applied, Span<float> product) noexcept {
+std::size_t GridClimb::step(const FloatPhi& phi, Span<const float> table, Span<const float> pulses,
+                            Signs signs, Signs applied, Span<float> product) noexcept {
   switch (phase_) {
     case Phase::kDone:
       return 0;
@@ -53,7 +84,7 @@ std::size_t GridClimb::step(const FloatPhi& phi, Span<const float> table, Signs 
     case Phase::kSigns:
       return take_signs(signs, applied, product);
     case Phase::kPulses:
-      return look_for_pulses(phi, signs, applied, product);
+      return look_for_pulses(phi, pulses, signs, applied, product);
   }
   return 0;
 }
@@ -93,24 +124,13 @@ std::size_t GridClimb::add_next_stretch(const FloatPhi& phi, Span<const float> t
 /// shift c that is one whose y is not beyond c on the other side.
 std::size_t GridClimb::take_signs(Signs signs, Signs applied, Span<const float> product) noexcept {
   const float limit = shift_ > kZero ? shift_ : kZero;
-  const auto limit_bits = __builtin_bit_cast(std::uint32_t, limit);
-  constexpr std::uint32_t kHighest = 0x80000000U;
-  bool changed = false;
   const std::size_t size = signs.size();
-  for (std::size_t word = 0, cell = 0; cell < size; ++word) {
-    const std::size_t count = size - cell < Signs::kBits ? size - cell : Signs::kBits;
-    std::uint32_t negative = 0;
-    std::uint32_t beyond = 0;
-    for (std::size_t k = 0; k < count; ++k, ++cell) {
-      const auto bits = __builtin_bit_cast(std::uint32_t, product[cell]);
-      negative = negative >> 1 | (bits & kHighest);
-      beyond = beyond >> 1 | ((limit_bits - (bits & ~kHighest)) & kHighest);
-    }
-    const std::size_t unused = Signs::kBits - count;
-    negative >>= unused;
-    beyond >>= unused;
+  bool changed = false;
+  for (std::size_t word = 0; word < sign_words(size); ++word) {
+    const Compared compared = compare(word, limit, product);
     const std::uint32_t before = signs.word(word);
-    const std::uint32_t after = (before & ~beyond) | (~negative & beyond);
+    const std::uint32_t after =
+        (before & ~compared.beyond) | (~compared.negative & compared.beyond);
     changed = changed || after != before;
     signs.set_word(word, after);
   }
@@ -150,36 +170,68 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
   phase_ = Phase::kPulses;
 }
 
-std::size_t GridClimb::look_for_pulses(const FloatPhi& phi, Signs signs, Signs applied,
-                                       Span<const float> product) noexcept {
+std::size_t GridClimb::look_for_pulses(const FloatPhi& phi, Span<const float> pulses, Signs signs,
+                                       Signs applied, Span<const float> product) noexcept {
+  const std::size_t words = sign_words(signs.size());
+  const float limit = phi.greatest_limit_per_cell();
   std::size_t work = 0;
-  while (next_ < signs.size() && work < kWorkOfPulses) {
-    const std::size_t run_end = signs.run_end(next_);
-    const bool positive = signs.is_positive(next_);
-    for (; next_ < run_end && work < kWorkOfPulses; ++next_) {
-      work += look_at(next_, run_end, positive, phi, product);
+  std::uint32_t weak = weakly_held(next_, limit, signs, product);
+  for (; next_ < words && work < kWorkOfPulses; ++next_) {
+    const std::uint32_t weak_after =
+        next_ + 1 < words ? weakly_held(next_ + 1, limit, signs, product) : 0;
+    // A stretch that gains holds less than its limit, so a cell of it less than the limit per cell.
+    std::uint64_t starts = weak | std::uint64_t{weak_after} << Signs::kBits;
+    starts |= starts >> 1;
+    starts |= starts >> 2;
+    starts |= starts >> 4;
+    static_assert(FloatPhi::kMaxPulse == 8);
+    work += look_at_word(next_, static_cast<std::uint32_t>(starts), phi, pulses, signs, product);
+    weak = weak_after;
+  }
+  if (next_ == words) {
+    turn_best(signs, applied);
+  }
+  return work;
+}
+
+/// @param[in] starts The cells of the word at which stretches begin that may gain.
+std::size_t GridClimb::look_at_word(std::size_t word, std::uint32_t starts, const FloatPhi& phi,
+                                    Span<const float> pulses, Signs signs,
+                                    Span<const float> product) noexcept {
+  std::size_t work = Signs::kBits / 4;
+  std::size_t run_end = 0;
+  for (; starts != 0; starts &= starts - 1) {
+    const std::size_t cell = Signs::kBits * word + static_cast<std::size_t>(__builtin_ctz(starts));
+    if (cell >= signs.size()) {
+      break;
     }
+    if (cell >= run_end) {
+      run_end = signs.run_end(cell);
+    }
+    const std::size_t left = run_end - cell;
+    const std::size_t longest = left < FloatPhi::kMaxPulse ? left : FloatPhi::kMaxPulse;
+    const bool positive = signs.is_positive(cell);
+    work += pulses.empty() ? look_at(cell, longest, positive, phi, product)
+                           : look_up(cell, longest, positive, pulses, product);
   }
-  if (next_ < signs.size()) {
-    return work;
-  }
+  return work;
+}
+
+void GridClimb::turn_best(Signs signs, Signs applied) noexcept {
   if (best_.width != 0 && turns_ < kMaxTurns) {
     ++turns_;
     for (std::size_t i = best_.cell; i < best_.cell + best_.width; ++i) {
       signs.turn(i);
     }
     begin_update(signs, applied);
-    return work;
+    return;
   }
   phase_ = updates_ != 0 && products_ < kMaxProducts ? Phase::kProduct : Phase::kDone;
-  return work;
 }
 
-/// The stretches that begin at a cell.
-std::size_t GridClimb::look_at(std::size_t cell, std::size_t run_end, bool positive,
+/// The stretches that begin at a cell, their energies computed where their limit lets them count.
+std::size_t GridClimb::look_at(std::size_t cell, std::size_t longest, bool positive,
                                const FloatPhi& phi, Span<const float> product) noexcept {
-  const std::size_t left = run_end - cell;
-  const std::size_t longest = left < FloatPhi::kMaxPulse ? left : FloatPhi::kMaxPulse;
   const float* value = product.data() + cell;
   std::size_t work = 1;
   float held = 0.0F;
@@ -191,11 +243,27 @@ std::size_t GridClimb::look_at(std::size_t cell, std::size_t run_end, bool posit
       if (gain > best_.gain) {
         best_ = {cell, k + 1, gain};
       }
-    } else if (held > phi.greatest_pulse_limit()) {
-      break;
     }
   }
   return work;
+}
+
+/// The same with their energies from the table.
+std::size_t GridClimb::look_up(std::size_t cell, std::size_t longest, bool positive,
+                               Span<const float> pulses, Span<const float> product) noexcept {
+  const float* value = product.data() + cell;
+  const float* energy = pulses.data() + FloatPhi::kMaxPulse * cell;
+  float held = 0.0F;
+  float best = best_.gain;
+  for (std::size_t k = 0; k < longest; ++k) {
+    held += positive ? value[k] : -value[k];
+    const float gain = energy[k] - held;
+    if (gain > best) {
+      best = gain;
+      best_ = {cell, k + 1, gain};
+    }
+  }
+  return 1;
 }
 
 }  // namespace emax

@@ -72,8 +72,8 @@ class Signs {
   std::uint32_t word(std::size_t index) const noexcept { return words_[index]; }
   void set_word(std::size_t index, std::uint32_t signs) const noexcept { words_[index] = signs; }
 
-  /// The first cell from `cell` on whose sign differs from that of another pattern of the same size,
-  /// or `size()`.
+  /// The first cell from `cell` on whose sign differs from that of another pattern of the same
+  /// size, or `size()`.
   std::size_t first_difference(Signs other, std::size_t cell) const noexcept {
     return first_of(other, cell, 0);
   }

@@ -117,18 +117,18 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// for the energy difference, which has more and higher local maxima.
 /// (Random signs are the best starts: the first steps of the fixed point leave in them what the
 /// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
-/// gains most is turned and the fixed point runs again, until no pulse gains (`GridClimb`, in single
-/// precision). A pulse inside a run of equal signs is a new pair of switches, one that fills a run
-/// takes a pair away, and one at the end of a run moves a switch. A climb that ends within 1 % of
-/// the highest one so far is refined in continuous time, in `double`. At last the best one goes back
-/// to the grid, which may have gains to offer again now that its switches have moved, up to 4 times,
-/// in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the result is the
-/// same on every target. 4.2 KiB beside the workspace.
+/// gains most is turned and the fixed point runs again, until no pulse gains (`GridClimb`, in
+/// single precision). A pulse inside a run of equal signs is a new pair of switches, one that fills
+/// a run takes a pair away, and one at the end of a run moves a switch. A climb that ends within 1
+/// % of the highest one so far is refined in continuous time, in `double`. At last the best one
+/// goes back to the grid, which may have gains to offer again now that its switches have moved, up
+/// to 4 times, in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the
+/// result is the same on every target. 4.2 KiB beside the workspace.
 ///
 /// Effort: at most kMaxStarts + kPolishings climbs. One climb takes 10 to 40 updates of the product
-/// where few switches are best, and up to 250 where it is a hundred switches; an update costs some 4
-/// instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half of
-/// that.
+/// where few switches are best, and up to 250 where it is a hundred switches; an update costs some
+/// 4 instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half
+/// of that.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 4;
@@ -175,23 +175,35 @@ class EnergySearch {
   static constexpr std::size_t kWorkPerStep = 640;
 
  private:
-  enum class Phase : std::uint8_t { kStart, kTable, kGridClimb, kClimb, kTurn, kRefine };
+  enum class Phase : std::uint8_t {
+    kPaperStart,
+    kStart,
+    kTables,
+    kGridClimb,
+    kClimb,
+    kTurn,
+    kRefine
+  };
 
-  /// What a start has climbed to; equal ones are of the same pattern.
+  /// What a start has climbed to, divided by the scale of the FloatPhi; equal ones are of the same
+  /// pattern.
   struct End {
-    double energy;
+    float energy;
     std::uint32_t pattern;
   };
 
-  std::size_t step_once(const PhiOperator& phi, const ModalModel& model, GridWorkspace& workspace,
-                        Span<double> trace) noexcept;
-  std::size_t step_in_single_precision(GridWorkspace& workspace) noexcept;
+  std::size_t step_with_operator(const PhiOperator& phi, const ModalModel& model,
+                                 GridWorkspace& workspace, Span<double> trace) noexcept;
+  std::size_t step_without_operator(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  bool needs_operator() const noexcept;
+  std::size_t step_grid_climb(GridWorkspace& workspace) noexcept;
   std::size_t step_refinement(const ModalModel& model, GridWorkspace& workspace) noexcept;
-  std::size_t fill_table(const PhiOperator& phi, const ModalModel& model,
-                         GridWorkspace& workspace) noexcept;
+  std::size_t fill_tables(const PhiOperator& phi, const ModalModel& model,
+                          GridWorkspace& workspace) noexcept;
   Span<float> table(GridWorkspace& workspace) const noexcept;
+  Span<float> pulses(GridWorkspace& workspace) const noexcept;
   Span<float> product(GridWorkspace& workspace) const noexcept;
-  void begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept;
+  void begin_climb(GridWorkspace& workspace) noexcept;
   void set_start(GridWorkspace& workspace) noexcept;
   void set_to_column(std::size_t cell, GridWorkspace& workspace) const noexcept;
   void set_to_half_periods(double half_period_s, Signs signs) const noexcept;
@@ -217,6 +229,7 @@ class EnergySearch {
   Refiner refiner_ = {};
   End ends_[kMaxStarts] = {};
   End end_ = {};  // Of this climb
+  double climb_energy_ = 0.0;
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
   double unstorable_energy_ = 0.0;
@@ -225,7 +238,8 @@ class EnergySearch {
   std::size_t climbs_ = 0;
   std::size_t starts_ = 0;
   std::size_t cells_ = 0;
-  std::size_t table_filled_ = 0;
+  std::size_t tables_filled_ = 0;  // In cells
+  std::size_t modes_ = 0;
   std::size_t iterations_ = 0;  // Of the first fixed point of this climb.
   std::size_t turns_ = 0;
   Phase phase_ = Phase::kStart;

@@ -15,14 +15,14 @@ namespace emax {
 ///
 ///     climb.start(shift);
 ///     while (!climb.done()) {
-///       climb.step(phi, table, signs, applied, product);
+///       climb.step(phi, table, pulses, signs, applied, product);
 ///     }
 ///
-/// The fixed point runs until it rests; then the stretch of up to FloatPhi::kMaxPulse cells of equal
-/// sign that gains most is turned, and the fixed point runs again, until no stretch gains. The
-/// product with Phi is kept up to date by the stretches that have turned; it is computed anew where
-/// they are many, and before the climb ends, so that it does not end by rounding. What gains less
-/// than 1e-6 of the energy is left to those who refine the end.
+/// The fixed point runs until it rests; then the stretch of up to FloatPhi::kMaxPulse cells of
+/// equal sign that gains most is turned, and the fixed point runs again, until no stretch gains.
+/// The product with Phi is kept up to date by the stretches that have turned; it is computed anew
+/// where they are many, and before the climb ends, so that it does not end by rounding. What gains
+/// less than 1e-6 of the energy is left to those who refine the end.
 class GridClimb {
  public:
   /// @param[in] shift As that of `FixedPoint`, divided by the scale of the FloatPhi.
@@ -31,13 +31,15 @@ class GridClimb {
   /// All the same in each step.
   ///
   /// @param[in]     table   As `FloatPhi::fill_table()` fills it.
+  /// @param[in]     pulses  As `FloatPhi::fill_pulses()` fills it; or empty, and the energies of
+  ///   pulses are computed where they may count.
   /// @param[in,out] signs   The starting pattern, then that of the climb; at the end the best one.
   /// @param[out]    applied Memory for the pattern that belongs to the product.
   /// @param[out]    product Memory for Phi x.
   /// @returns What it has cost, in cells of a product in single precision: at most some thousand or
   ///   four products.
-  std::size_t step(const FloatPhi& phi, Span<const float> table, Signs signs, Signs applied,
-                   Span<float> product) noexcept;
+  std::size_t step(const FloatPhi& phi, Span<const float> table, Span<const float> pulses,
+                   Signs signs, Signs applied, Span<float> product) noexcept;
 
   bool done() const noexcept { return phase_ == Phase::kDone; }
   /// @returns With `done()`, the energy of the pattern, divided by the scale of the FloatPhi.
@@ -60,10 +62,16 @@ class GridClimb {
                                Signs applied, Span<float> product) noexcept;
   std::size_t take_signs(Signs signs, Signs applied, Span<const float> product) noexcept;
   void rest(Signs signs, Span<const float> product) noexcept;
-  std::size_t look_for_pulses(const FloatPhi& phi, Signs signs, Signs applied,
-                              Span<const float> product) noexcept;
-  std::size_t look_at(std::size_t cell, std::size_t run_end, bool positive, const FloatPhi& phi,
+  std::size_t look_for_pulses(const FloatPhi& phi, Span<const float> pulses, Signs signs,
+                              Signs applied, Span<const float> product) noexcept;
+  std::size_t look_at_word(std::size_t word, std::uint32_t starts, const FloatPhi& phi,
+                           Span<const float> pulses, Signs signs,
+                           Span<const float> product) noexcept;
+  std::size_t look_at(std::size_t cell, std::size_t longest, bool positive, const FloatPhi& phi,
                       Span<const float> product) noexcept;
+  std::size_t look_up(std::size_t cell, std::size_t longest, bool positive,
+                      Span<const float> pulses, Span<const float> product) noexcept;
+  void turn_best(Signs signs, Signs applied) noexcept;
   void begin_update(Signs signs, Signs applied) noexcept;
 
   FloatPhi::End at_end_ = {};  // Of the stretches of this update
