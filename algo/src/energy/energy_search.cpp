@@ -19,6 +19,12 @@ constexpr std::size_t kMaxTurns = 1000;
 constexpr double kSmallestGain = 1e-9;
 /// A climb that ends this part below the highest one is not refined: refinement adds no more.
 constexpr float kWorthRefining = 0.01F;
+/// Kicks that change the time between switches.
+constexpr std::size_t kStretches = 8;
+/// The longest stretch that another kick changes, as part of all cells, and what it must gain to be
+/// refined.
+constexpr double kLongestKick = 0.25;
+constexpr float kGainOfKick = 2e-6F;
 /// Energies that differ by less than this part are of the same signal.
 constexpr double kSame = 1e-11;
 /// What a step of a refinement costs for each switch, in cells of a product.
@@ -46,6 +52,8 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
   return static_cast<std::size_t>(whole) + (cells - whole > 1e-9 * cells ? 1u : 0u);
 }
 
+constexpr float magnitude(float x) noexcept { return x < 0.0F ? -x : x; }
+
 /// A number that other patterns hardly have, the same for all signs turned (FNV-1a).
 std::uint32_t mark(Signs signs) noexcept {
   const std::uint32_t turn = signs.is_positive(0) ? 0 : ~std::uint32_t{0};
@@ -59,6 +67,26 @@ std::uint32_t mark(Signs signs) noexcept {
   }
   return hash;
 }
+
+/// The sign of a signal at times most of which follow each other.
+class SignAt {
+ public:
+  explicit SignAt(const SwitchingSignal& signal) noexcept : times_s_(signal.times_s()) {}
+
+  bool is_positive(double time_s) noexcept {
+    if (passed_ != 0 && times_s_[passed_ - 1] > time_s) {
+      passed_ = 0;
+    }
+    while (passed_ < times_s_.size() && times_s_[passed_] <= time_s) {
+      ++passed_;
+    }
+    return passed_ % 2 == 0;
+  }
+
+ private:
+  Span<const double> times_s_;
+  std::size_t passed_ = 0;
+};
 
 }  // namespace
 
@@ -165,7 +193,8 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   unstorable_energy_ = -std::numeric_limits<double>::infinity();
   climbs_made_ = 0;
   starts_ = model.criterion() == Criterion::kEnergyDifference ? kMaxStarts : kStarts;
-  climbs_ = paper ? 1 : starts_ + kPolishings;
+  kicks_ = 1 + (starts_ / kStarts) * kKicks;
+  climbs_ = paper ? 1 : starts_ + kicks_ + kPolishings;
   tables_filled_ = 0;
   modes_ = model.modes().size();
   phase_ = paper ? Phase::kPaperStart : Phase::kStart;
@@ -368,14 +397,64 @@ void EnergySearch::set_start(GridWorkspace& workspace) noexcept {
 
 /// The best signal on the cells of the grid: each takes the sign in its middle.
 void EnergySearch::set_to_result(Signs signs) const noexcept {
-  const Span<const double> times_s = result_.signal.times_s();
   const double cell_s = settings_.duration_s / static_cast<double>(cells_);
-  std::size_t passed = 0;
+  SignAt result(result_.signal);
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    while (passed < times_s.size() && times_s[passed] <= (static_cast<double>(i) + 0.5) * cell_s) {
-      ++passed;
+    signs.set(i, result.is_positive((static_cast<double>(i) + 0.5) * cell_s));
+  }
+}
+
+/// The best signal with the time between its switches changed, so that one or two more or fewer fit
+/// in: from 0 on, or from T back. Where it has to go on, it repeats itself.
+void EnergySearch::set_to_stretched_result(std::size_t number, Signs signs) const noexcept {
+  constexpr double kMore[] = {1.0, -1.0, 2.0, -2.0};
+  const auto count = static_cast<double>(result_.signal.count());
+  const double factor = (count + kMore[number % 4]) / count;
+  const double duration_s = settings_.duration_s;
+  const double cell_s = duration_s / static_cast<double>(cells_);
+  const double repeat_s = 2.0 * duration_s / (count + 1.0);
+  SignAt result(result_.signal);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const double time_s = (static_cast<double>(i) + 0.5) * cell_s;
+    double of_result_s = 0.0;
+    if (number < 4) {
+      of_result_s = factor * time_s;
+      of_result_s -= of_result_s > duration_s ? repeat_s : 0.0;
+    } else {
+      of_result_s = duration_s - factor * (duration_s - time_s);
+      of_result_s += of_result_s < 0.0 ? repeat_s : 0.0;
     }
-    signs.set(i, passed % 2 == 0);
+    signs.set(i, result.is_positive(of_result_s));
+  }
+}
+
+/// The start of a climb near the best signal. The first time it is that signal itself: that climb
+/// says what the others have to beat. Then its switches are stretched, then parts of it are turned
+/// or get random signs.
+void EnergySearch::set_to_kick(Signs signs) const noexcept {
+  const std::size_t number = climbs_made_ - starts_;
+  if (number != 0 && number <= kStretches && result_.signal.count() > 2) {
+    set_to_stretched_result(number - 1, signs);
+    return;
+  }
+  set_to_result(signs);
+  if (number == 0) {
+    return;
+  }
+  WichmannHill random;
+  (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kRandomSeed));
+  random.jump((kMaxStarts + number) * kNumbersPerPattern);
+  const auto cells = static_cast<double>(cells_);
+  const double part = random.next();
+  const double width = floor(kLongestKick * part * part * cells) + 1.0;
+  const auto begin = static_cast<std::size_t>(floor((cells - width) * random.next()));
+  const std::size_t end = begin + static_cast<std::size_t>(width);
+  for (std::size_t i = begin; i < end; ++i) {
+    if (number % 2 != 0) {
+      signs.turn(i);
+    } else {
+      signs.set(i, !(random.next() < 0.5));
+    }
   }
 }
 
@@ -391,8 +470,12 @@ void EnergySearch::begin_climb(GridWorkspace& workspace) noexcept {
     phase_ = Phase::kTables;
     return;
   }
-  ++result_.starts;
-  set_start(workspace);
+  if (is_start()) {
+    ++result_.starts;
+    set_start(workspace);
+  } else {
+    set_to_kick(workspace.signs(cells_));
+  }
   grid_climb_.start(static_cast<float>(shift_ / float_phi_.scale()));
   phase_ = Phase::kGridClimb;
 }
@@ -481,8 +564,10 @@ void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
 }
 
 void EnergySearch::next_climb() noexcept {
-  if (!is_polishing()) {
+  if (is_start()) {
     ends_[climbs_made_] = end_;
+  } else if (!is_polishing() && (climbs_made_ == starts_ || end_.energy > energy_to_beat_)) {
+    energy_to_beat_ = end_.energy;
   }
   ++climbs_made_;
   // Nothing to polish.
@@ -494,6 +579,10 @@ void EnergySearch::next_climb() noexcept {
 
 /// Whether the end of this climb is near the highest so far, and not that of an earlier climb.
 bool EnergySearch::is_worth_refining() const noexcept {
+  if (!is_start()) {
+    return climbs_made_ != starts_ &&
+           end_.energy > energy_to_beat_ + kGainOfKick * magnitude(energy_to_beat_);
+  }
   float highest = end_.energy;
   for (const End& end : Span<const End>(ends_).first(climbs_made_)) {
     if (end.pattern == end_.pattern && end.energy == end_.energy) {
@@ -501,8 +590,7 @@ bool EnergySearch::is_worth_refining() const noexcept {
     }
     highest = end.energy > highest ? end.energy : highest;
   }
-  const float part = kWorthRefining * (highest < 0.0F ? -highest : highest);
-  return !has_result_ || end_.energy >= highest - part;
+  return !has_result_ || end_.energy >= highest - kWorthRefining * magnitude(highest);
 }
 
 /// Makes a signal the result if it is better.
@@ -513,7 +601,7 @@ void EnergySearch::take(const SwitchingSignal& signal, double energy) noexcept {
   has_result_ = true;
   result_.energy = energy;
   result_.signal = signal;
-  if (!is_polishing()) {
+  if (is_start()) {
     result_.iterations = iterations_;
     result_.at_rest = at_rest_;
   }

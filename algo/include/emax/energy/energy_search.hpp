@@ -137,6 +137,9 @@ class EnergySearch {
   static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods + kRandomStarts;
   /// For the energy difference.
   static constexpr std::size_t kMaxStarts = 2 * kStarts;
+  /// Climbs from the best signal with a stretch turned or made random; as many more for the energy
+  /// difference.
+  static constexpr std::size_t kKicks = 12;
   static constexpr std::size_t kPolishings = 4;
 
   /// Lays out the grid. Model and settings must stay as they are until the search is done, and
@@ -208,6 +211,8 @@ class EnergySearch {
   void set_to_column(std::size_t cell, GridWorkspace& workspace) const noexcept;
   void set_to_half_periods(double half_period_s, Signs signs) const noexcept;
   void set_to_result(Signs signs) const noexcept;
+  void set_to_stretched_result(std::size_t number, Signs signs) const noexcept;
+  void set_to_kick(Signs signs) const noexcept;
   void run_fixed_point() noexcept;
   void end_fixed_point(std::size_t room) noexcept;
   std::size_t step_turn(const PhiOperator& phi, const ModalModel& model,
@@ -218,7 +223,8 @@ class EnergySearch {
   void next_climb() noexcept;
   bool is_worth_refining() const noexcept;
   void take(const SwitchingSignal& signal, double energy) noexcept;
-  bool is_polishing() const noexcept { return climbs_made_ >= starts_; }
+  bool is_start() const noexcept { return climbs_made_ < starts_; }
+  bool is_polishing() const noexcept { return climbs_made_ >= starts_ + kicks_; }
 
   MaximumEnergy result_ = {};
   SearchSettings settings_ = {};
@@ -228,7 +234,8 @@ class EnergySearch {
   PulseTurn pulse_turn_ = {};
   Refiner refiner_ = {};
   End ends_[kMaxStarts] = {};
-  End end_ = {};  // Of this climb
+  End end_ = {};                 // Of this climb
+  float energy_to_beat_ = 0.0F;  // By a kick: that of the best pattern
   double climb_energy_ = 0.0;
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
@@ -237,6 +244,7 @@ class EnergySearch {
   std::size_t climbs_made_ = 0;
   std::size_t climbs_ = 0;
   std::size_t starts_ = 0;
+  std::size_t kicks_ = 0;
   std::size_t cells_ = 0;
   std::size_t tables_filled_ = 0;  // In cells
   std::size_t modes_ = 0;
