@@ -11,6 +11,8 @@ namespace emax {
 namespace {
 
 constexpr double kCellsPerPeriod = 12.0;
+/// For the energy difference fast switching can pay, as it takes what the filter would pass away.
+constexpr double kFinerForDifference = 4.0;
 constexpr std::size_t kMinCells = 24;
 constexpr std::size_t kClimbIterations = 200;
 /// Pulses turned in one climb; no run has been seen to need as many.
@@ -101,7 +103,8 @@ void clear(MaximumEnergy& maximum) noexcept {
 
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
   const double f0 = model.device().natural_frequency_hz;
-  const double fc = model.filter().cutoff_hz;
+  const bool difference = model.criterion() == Criterion::kEnergyDifference;
+  const double fc = (difference ? kFinerForDifference : 1.0) * model.filter().cutoff_hz;
   const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * (f0 > fc ? f0 : fc)));
   return cells < kMinCells ? kMinCells : cells;
 }

@@ -48,7 +48,8 @@ struct MaximumEnergy {
 void clear(MaximumEnergy& maximum) noexcept;
 
 /// The number of cells of the grid of `Method::kBest`: cells of at most 1/(12 f) with f the larger
-/// of f0 and fc, so that the resonance is seen, and at least 24 of them.
+/// of f0 and fc, so that the resonance is seen, and at least 24 of them. For the energy difference
+/// 4 fc counts instead of fc: there, fast switching takes away what the filter would pass.
 ///
 /// @returns kMaxCells + 1 if it takes more than kMaxCells.
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
