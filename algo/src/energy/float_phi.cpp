@@ -16,18 +16,18 @@ constexpr float kNothing = 1e-20F;
 /// Cells between two looks at whether it is.
 constexpr std::size_t kCellsPerLook = 16;
 
-FloatComplex single(Complex z) noexcept {
-  return {static_cast<float>(z.re), static_cast<float>(z.im)};
+/// The value of a cell, and the stretch of one value that it is in.
+float value_at(Signs signs, std::size_t cell) noexcept {
+  return signs.is_positive(cell) ? 1.0F : -1.0F;
 }
-FloatComplex operator+(FloatComplex a, FloatComplex b) noexcept {
-  return {a.re + b.re, a.im + b.im};
+float value_at(Span<const float> signal, std::size_t cell) noexcept { return signal[cell]; }
+std::size_t stretch_end(Signs signs, std::size_t begin) noexcept { return signs.run_end(begin); }
+std::size_t stretch_end(Span<const float>, std::size_t begin) noexcept { return begin + 1; }
+std::size_t stretch_begin(Signs signs, std::size_t end) noexcept {
+  return signs.run_begin(end - 1);
 }
-FloatComplex operator*(FloatComplex a, FloatComplex b) noexcept {
-  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
-}
-FloatComplex operator*(float s, FloatComplex a) noexcept { return {s * a.re, s * a.im}; }
-/// Re(a b).
-float real_of_product(FloatComplex a, FloatComplex b) noexcept { return a.re * b.re - a.im * b.im; }
+std::size_t stretch_begin(Span<const float>, std::size_t end) noexcept { return end - 1; }
+
 float size(FloatComplex z) noexcept {
   return (z.re < 0.0F ? -z.re : z.re) + (z.im < 0.0F ? -z.im : z.im);
 }
@@ -95,9 +95,10 @@ void FloatPhi::fill_table(const PhiOperator& phi, std::size_t begin, std::size_t
   }
 }
 
-void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
+template <typename Signal>
+void FloatPhi::apply(Signal signal, Span<float> product) const noexcept {
   for (std::size_t i = 0; i < cells_; ++i) {
-    product[i] = signs.is_positive(i) ? endless_diagonal_ : -endless_diagonal_;
+    product[i] = endless_diagonal_ * value_at(signal, i);
   }
   End at_end;
   // Two modes at a time, which with their states and factors fit into the registers.
@@ -107,8 +108,8 @@ void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
     FloatComplex first;
     FloatComplex second;
     for (std::size_t i = 0; i < cells_;) {
-      const float value = signs.is_positive(i) ? 1.0F : -1.0F;
-      for (const std::size_t stretch_end = signs.run_end(i); i < stretch_end; ++i) {
+      const float value = value_at(signal, i);
+      for (const std::size_t end = stretch_end(signal, i); i < end; ++i) {
         product[i] = product[i] + real_of_product(correlation[0], first) +
                      real_of_product(correlation[1], second);
         first = step[0] * first;
@@ -129,8 +130,8 @@ void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
     FloatComplex first = back[m];
     FloatComplex second = back[m + 1];
     for (std::size_t i = cells_; i != 0;) {
-      const std::size_t begin = signs.run_begin(i - 1);
-      const float value = signs.is_positive(begin) ? 1.0F : -1.0F;
+      const std::size_t begin = stretch_begin(signal, i);
+      const float value = value_at(signal, begin);
       const FloatComplex added[2] = {value * correlation_[m], value * correlation_[m + 1]};
       while (i != begin) {
         --i;
@@ -140,6 +141,12 @@ void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept {
       }
     }
   }
+}
+
+void FloatPhi::multiply(Signs signs, Span<float> product) const noexcept { apply(signs, product); }
+
+void FloatPhi::multiply(Span<const float> signal, Span<float> product) const noexcept {
+  apply(signal, product);
 }
 
 /// What the cells from `begin` to before `end` leave in a mode's output at T: their sum of powers

@@ -5,18 +5,13 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "emax/base/float_complex.hpp"
 #include "emax/base/signs.hpp"
 #include "emax/base/span.hpp"
 #include "emax/energy/phi_operator.hpp"
 #include "emax/model/modal_model.hpp"
 
 namespace emax {
-
-/// A complex number of single precision.
-struct FloatComplex {
-  float re = 0.0F;
-  float im = 0.0F;
-};
 
 /// `PhiOperator` in `float`, divided by its largest diagonal so that no sensitivity leaves the
 /// range of `float`, and with a table by which a stretch of cells that turns is added to a product.
@@ -46,6 +41,8 @@ class FloatPhi {
 
   /// product = Phi signs, by one forward and one backward recursion.
   void multiply(Signs signs, Span<float> product) const noexcept;
+  /// The same for a signal with any values.
+  void multiply(Span<const float> signal, Span<float> product) const noexcept;
 
   /// What signals have left in the modes' outputs at T, to be taken away from a product together.
   struct End {
@@ -76,6 +73,8 @@ class FloatPhi {
   float greatest_limit_per_cell() const noexcept { return greatest_limit_per_cell_; }
 
  private:
+  template <typename Signal>
+  void apply(Signal signal, Span<float> product) const noexcept;
   static constexpr std::size_t kPlaces = kMaxModes + 2;  // Two that are nothing follow the modes.
   static constexpr std::size_t kPairs = kMaxModes * (kMaxModes + 1) / 2;
 
