@@ -49,8 +49,9 @@ constexpr std::size_t kSweeps = 64;
 constexpr std::size_t kMaxProposalCells = smaller_of(1024, packed_size(kPhiCells) / kRank);
 /// For each cell of the search, as long as they are not too many.
 constexpr std::size_t kProposalCellsPerCell = 4;
-/// And at least half a one.
-constexpr std::size_t kMostCellsPerProposalCell = 2;
+/// And at least one, or half a one for a sensor that rings longer than this part of the record that
+/// so many resolve: what happens at one end of it still matters at the other.
+constexpr double kLongRinging = 0.125;
 constexpr std::size_t kStepsPerCell = 4;
 constexpr std::size_t kLongGrid = 512;
 constexpr std::size_t kStepsPerCellOfLongGrid = 2;
@@ -59,7 +60,7 @@ constexpr std::size_t kMoreStepsForOrder1 = 4;
 /// Least d, as part of its mean: d falls to 0 towards T, but its least value divides the remainder.
 constexpr double kFloor = 0.02;
 constexpr std::size_t kMaxTrials = 20;
-constexpr std::size_t kMaxChecks = 12;
+constexpr std::size_t kMaxChecks = 20;
 constexpr std::size_t kStepsAtOnce = 16;
 constexpr std::size_t kTrialStepsAtOnce = 64;
 /// The first lift on trial. It triples until one passes, or below 0 until one fails.
@@ -68,6 +69,8 @@ constexpr double kLiftResolution = 2e-5;
 /// What the check begins with on top of a lift that has passed the trial; it triples until one
 /// passes.
 constexpr double kFirstRaise = 2e-5;
+/// With as many modes the trial is off by more than 1e-4, and the check bisects itself.
+constexpr std::size_t kManyModes = 7;
 /// A cell whose vectors have no more length than this is left without a direction.
 constexpr float kNoLength2 = 1e-30F;
 constexpr std::uint32_t kSeed[] = {1, 2, 3, 4};
@@ -297,11 +300,9 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   steps_ = grid * (grid > kLongGrid ? kStepsPerCellOfLongGrid : kStepsPerCell) *
            (model.filter().order == 1 ? kMoreStepsForOrder1 : 1);
   cells_ = smaller(kProposalCellsPerCell * grid, kMaxProposalCells);
+  count_of_modes_ = model.modes().size();
   duration_s_ = duration_s;
-  const std::size_t resolved = kMostCellsPerProposalCell * cells_;
-  proposal_s_ = grid > resolved
-                    ? duration_s * static_cast<double>(resolved) / static_cast<double>(grid)
-                    : duration_s;
+  proposal_s_ = resolved_time(model, duration_s, grid);
   bound_ = kInfinity;
   const Status status = check_.start(model, duration_s, steps_);
   if (status != Status::kOk) {
@@ -315,6 +316,18 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   checks_ = 0;
   phase_ = Phase::kFirstVectors;
   return Status::kOk;
+}
+
+/// T, or as much of it as the cells of the proposal resolve.
+double EnergyBound::resolved_time(const ModalModel& model, double duration_s,
+                                  std::size_t grid) const noexcept {
+  if (grid <= cells_) {
+    return duration_s;
+  }
+  const Accelerometer& device = model.device();
+  const double ringing_s = 1.0 / (device.damping * kTwoPi * device.natural_frequency_hz);
+  const double resolved_s = duration_s * static_cast<double>(cells_) / static_cast<double>(grid);
+  return ringing_s > kLongRinging * resolved_s ? smaller(duration_s, 2.0 * resolved_s) : resolved_s;
 }
 
 void EnergyBound::begin_proposal(const ModalModel& model) noexcept {
@@ -345,7 +358,8 @@ double EnergyBound::progress() const noexcept {
     return 1.0;
   }
   // A check takes the time of several trials, and few are needed.
-  const std::size_t made = sweeps_ + trials_ + kMaxTrials * (checks_ != 0 || phase_ == Phase::kCheck ? 1 : 0) + checks_;
+  const std::size_t made =
+      sweeps_ + trials_ + kMaxTrials * (checks_ != 0 || phase_ == Phase::kCheck ? 1 : 0) + checks_;
   return static_cast<double>(made) / static_cast<double>(kSweeps + 2 * kMaxTrials + kMaxChecks);
 }
 
@@ -383,7 +397,8 @@ void EnergyBound::take_directions(Span<float> vectors, Span<float> products) con
 void EnergyBound::take_proposal(GridWorkspace& workspace) noexcept {
   const Span<float> d = workspace.singles().first(cells_);
   const Span<float> lengths = workspace.singles().from(kRank * cells_);
-  const auto per_second = static_cast<float>(phi_.scale() * static_cast<double>(cells_) / proposal_s_);
+  const auto per_second =
+      static_cast<float>(phi_.scale() * static_cast<double>(cells_) / proposal_s_);
   double sum = 0.0;
   for (std::size_t i = 0; i < cells_; ++i) {
     d[i] = per_second * lengths[i];
@@ -434,39 +449,61 @@ double EnergyBound::multiplier(std::size_t step, GridWorkspace& workspace) const
   return lifted(shape(step, workspace.singles().first(cells_)), passed_);
 }
 
+void EnergyBound::begin_lifts(double first) noexcept {
+  lift_ = first;
+  passed_ = kInfinity;
+  failed_ = -kInfinity;
+  steps_left_ = steps_;
+}
+
+/// Bisects once a lift has passed and one has failed. @returns False if they are near enough.
+bool EnergyBound::next_lift() noexcept {
+  steps_left_ = steps_;
+  if (!(passed_ < kInfinity)) {
+    lift_ *= 3.0;
+  } else if (failed_ > -kInfinity) {
+    lift_ = 0.5 * (passed_ + failed_);
+  } else {
+    lift_ *= lift_ > 0.0 ? -3.0 : 3.0;
+  }
+  return passed_ - failed_ >= kLiftResolution;
+}
+
 /// The next lift on trial; at the end the least one that has passed, raised, to be checked.
 void EnergyBound::next_trial(bool passed) noexcept {
   (passed ? passed_ : failed_) = lift_;
   ++trials_;
-  steps_left_ = steps_;
-  if (trials_ == kMaxTrials || passed_ - failed_ < kLiftResolution) {
-    phase_ = passed_ < kInfinity ? Phase::kCheck : Phase::kDone;
-    raise_ = kFirstRaise;
-    lift_ = passed_ + raise_;
+  trial_.restart();
+  if (next_lift() && trials_ < kMaxTrials) {
     return;
   }
-  if (passed_ < kInfinity && failed_ > -kInfinity) {
-    lift_ = 0.5 * (passed_ + failed_);
-  } else {
-    lift_ *= passed && lift_ > 0.0 ? -3.0 : 3.0;
-  }
-  trial_.restart();
+  phase_ = passed_ < kInfinity ? Phase::kCheck : Phase::kDone;
+  guess_ = passed_;
+  raise_ = kFirstRaise;
+  begin_lifts(guess_ + raise_);
 }
 
+/// The next lift to check: more raised than the one that has failed. The first one that passes is
+/// the result; with many modes the check then looks for a lower one, below the guess too.
 void EnergyBound::next_check(bool passed) noexcept {
+  (passed ? passed_ : failed_) = lift_;
   ++checks_;
-  if (passed) {
+  check_.restart();
+  const bool is_bisecting = count_of_modes_ >= kManyModes && checks_ < kMaxChecks;
+  const bool has_passed = passed_ < kInfinity;
+  if (has_passed && !(is_bisecting && passed_ - failed_ >= kLiftResolution)) {
     phase_ = Phase::kDone;
-    const double lift = lift_;
-    passed_ = lift;
-    bound_ = check_.completed(duration_s_ * lifted(mean_, lift), lifted(least_, lift));
+    bound_ = check_.completed(duration_s_ * lifted(mean_, passed_), lifted(least_, passed_));
     return;
   }
-  phase_ = checks_ == kMaxChecks ? Phase::kDone : Phase::kCheck;
-  raise_ *= 3.0;
-  lift_ = passed_ + raise_;
-  check_.restart();
   steps_left_ = steps_;
+  if (has_passed && failed_ > -kInfinity) {
+    lift_ = 0.5 * (passed_ + failed_);
+    return;
+  }
+  raise_ *= 3.0;
+  lift_ = has_passed ? guess_ - raise_ : guess_ + raise_;
+  phase_ = checks_ < kMaxChecks ? Phase::kCheck : Phase::kDone;
 }
 
 void EnergyBound::try_steps(Span<const float> d) noexcept {
@@ -506,10 +543,7 @@ Status EnergyBound::step(const ModalModel& /*model*/, GridWorkspace& workspace) 
       if (sweeps_ == kSweeps) {
         take_proposal(workspace);
         phase_ = Phase::kTrial;
-        lift_ = kFirstLift;
-        passed_ = kInfinity;
-        failed_ = -kInfinity;
-        steps_left_ = steps_;
+        begin_lifts(kFirstLift);
       }
       return Status::kOk;
     case Phase::kTrial:

@@ -110,13 +110,14 @@ static_assert(std::is_trivially_copyable_v<DissipationCheck>);
 ///
 /// The proposal is the dual of the semidefinite relaxation on a grid: 64 times, unit vectors v_i <-
 /// normalised sum_j Phi_ij v_j, then d_i = |sum_j Phi_ij v_j| (the mixing method), in single
-/// precision, and linear in between. The grid has 4 cells for each of the search, as far as 1024 go,
-/// and at least a half; a T of more than 2048 cells of the search takes the proposal of a T with
-/// 2048, with its middle stretched. The proposal may be as wrong as it likes, as only what passes
-/// `DissipationCheck` is reported: it is raised until it passes. How much it must be raised is found
-/// by bisection with `DissipationTrial`, in single precision too; a little more than that mostly
-/// passes the check at once. 392 steps for the paper's device at T = 2 ms, 1956 at 10 ms; with more
-/// than 1024 cells of the search 2 for each; 4 times that for order 1.
+/// precision, and linear in between. The grid has 4 cells for each of the search, as far as 1024
+/// go; a T of more than 1024 cells of the search takes the proposal of a T with 1024, with its
+/// middle stretched, or of one with 2048 at half the resolution if the sensor rings for long. The
+/// proposal may be as wrong as it likes, as only what passes `DissipationCheck` is reported: it is
+/// raised until it passes. How much it must be raised is found by bisection with
+/// `DissipationTrial`, in single precision too; a little more than that mostly passes the check at
+/// once. (With 7 modes or more, the check bisects too.) 392 steps for the paper's device at T = 2
+/// ms, 1956 at 10 ms; with more than 1024 cells of the search 2 for each; 4 times that for order 1.
 ///
 /// 6.8 KiB beside the workspace, in which nobody else must work meanwhile.
 class EnergyBound {
@@ -150,7 +151,10 @@ class EnergyBound {
  private:
   enum class Phase : std::uint8_t { kDone, kFirstVectors, kProposal, kTrial, kCheck };
 
+  double resolved_time(const ModalModel& model, double duration_s, std::size_t grid) const noexcept;
   void begin_proposal(const ModalModel& model) noexcept;
+  void begin_lifts(double first) noexcept;
+  bool next_lift() noexcept;
   void fill_vector(GridWorkspace& workspace) noexcept;
   void sweep(GridWorkspace& workspace) noexcept;
   void take_directions(Span<float> vectors, Span<float> products) const noexcept;
@@ -175,9 +179,11 @@ class EnergyBound {
   double lift_ = 0.0;    // on trial
   double passed_ = 0.0;  // the least that has passed, infinity before
   double failed_ = 0.0;  // the greatest that has not, minus infinity before
-  double raise_ = 0.0;   // on top of what has passed the trial
+  double guess_ = 0.0;   // what has passed the trial
+  double raise_ = 0.0;   // on top of it
   std::size_t cells_ = 0;
   std::size_t steps_ = 0;
+  std::size_t count_of_modes_ = 0;
   std::size_t sweeps_ = 0;
   std::size_t vector_ = 0;  // Whose product comes next.
   std::size_t trials_ = 0;
