@@ -47,4 +47,13 @@ Complex phi2(Complex z) noexcept {
   return (exp(z) - Complex{1.0, 0.0} - z) / (z * z);
 }
 
+Complex power(Complex z, std::size_t n) noexcept {
+  Complex result{1.0, 0.0};
+  for (; n != 0; n /= 2) {
+    result = n % 2 != 0 ? z * result : result;
+    z = z * z;
+  }
+  return result;
+}
+
 }  // namespace emax

@@ -5,6 +5,7 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/float_root.hpp"
 #include "emax/base/units.hpp"
 #include "emax/base/wichmann_hill.hpp"
 #include "emax/energy/phi_operator.hpp"
@@ -39,23 +40,39 @@ constexpr double kRoot3 = 1.7320508075688772;
 /// The lowest frequency of a clamped beam, 4.730040744862704, squared (rounded down).
 constexpr double kClampedBeam = 22.373285;
 
+constexpr std::size_t smaller_of(std::size_t a, std::size_t b) noexcept { return b < a ? b : a; }
+
 constexpr std::size_t kRank = 8;
 constexpr std::size_t kSweeps = 64;
-/// Vectors and their products with Phi share the workspace.
-constexpr std::size_t kMaxProposalCells = kMaxCells / (2 * kRank);
+/// The same for all capacities that have the room: vectors and their products with Phi share the
+/// workspace.
+constexpr std::size_t kMaxProposalCells = smaller_of(1024, packed_size(kPhiCells) / kRank);
 /// For each cell of the search, as long as they are not too many.
 constexpr std::size_t kProposalCellsPerCell = 4;
+/// And at least one, or half a one for a sensor that rings longer than this part of the record that
+/// so many resolve: what happens at one end of it still matters at the other.
+constexpr double kLongRinging = 0.125;
 constexpr std::size_t kStepsPerCell = 4;
+constexpr std::size_t kLongGrid = 512;
 constexpr std::size_t kStepsPerCellOfLongGrid = 2;
 /// Order 1 has the larger remainder, and the fewest modes.
 constexpr std::size_t kMoreStepsForOrder1 = 4;
 /// Least d, as part of its mean: d falls to 0 towards T, but its least value divides the remainder.
 constexpr double kFloor = 0.02;
+constexpr std::size_t kMaxTrials = 20;
 constexpr std::size_t kMaxChecks = 20;
 constexpr std::size_t kStepsAtOnce = 16;
+constexpr std::size_t kTrialStepsAtOnce = 64;
 /// The first lift on trial. It triples until one passes, or below 0 until one fails.
 constexpr double kFirstLift = 0.002;
 constexpr double kLiftResolution = 2e-5;
+/// What the check begins with on top of a lift that has passed the trial; it triples until one
+/// passes.
+constexpr double kFirstRaise = 2e-5;
+/// With as many modes the trial is off by more than 1e-4, and the check bisects itself.
+constexpr std::size_t kManyModes = 7;
+/// A cell whose vectors have no more length than this is left without a direction.
+constexpr float kNoLength2 = 1e-30F;
 constexpr std::uint32_t kSeed[] = {1, 2, 3, 4};
 
 constexpr double larger(double a, double b) noexcept { return b > a ? b : a; }
@@ -280,24 +297,45 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   if (grid > kMaxCells) {
     return Status::kTooManyCells;
   }
-  const bool is_long = grid > kMaxProposalCells;
-  steps_ = grid * (is_long ? kStepsPerCellOfLongGrid : kStepsPerCell) *
+  steps_ = grid * (grid > kLongGrid ? kStepsPerCellOfLongGrid : kStepsPerCell) *
            (model.filter().order == 1 ? kMoreStepsForOrder1 : 1);
   cells_ = smaller(kProposalCellsPerCell * grid, kMaxProposalCells);
+  count_of_modes_ = model.modes().size();
   duration_s_ = duration_s;
-  proposal_s_ =
-      is_long ? duration_s * static_cast<double>(cells_) / static_cast<double>(grid) : duration_s;
+  proposal_s_ = resolved_time(model, duration_s, grid);
   bound_ = kInfinity;
   const Status status = check_.start(model, duration_s, steps_);
   if (status != Status::kOk) {
     return status;
   }
+  begin_proposal(model);
   workspace.share_nothing();
   vector_ = 0;
   sweeps_ = 0;
+  trials_ = 0;
   checks_ = 0;
   phase_ = Phase::kFirstVectors;
   return Status::kOk;
+}
+
+/// T, or as much of it as the cells of the proposal resolve.
+double EnergyBound::resolved_time(const ModalModel& model, double duration_s,
+                                  std::size_t grid) const noexcept {
+  if (grid <= cells_) {
+    return duration_s;
+  }
+  const Accelerometer& device = model.device();
+  const double ringing_s = 1.0 / (device.damping * kTwoPi * device.natural_frequency_hz);
+  const double resolved_s = duration_s * static_cast<double>(cells_) / static_cast<double>(grid);
+  return ringing_s > kLongRinging * resolved_s ? smaller(duration_s, 2.0 * resolved_s) : resolved_s;
+}
+
+void EnergyBound::begin_proposal(const ModalModel& model) noexcept {
+  PhiOperator phi;
+  (void)phi.set(model, proposal_s_, cells_);
+  phi_.set(model, phi);
+  const double cell_s = proposal_s_ / static_cast<double>(cells_);
+  shift_ = static_cast<float>(ascent_shift(model, cell_s) / phi_.scale());
 }
 
 /// One vector; all of them together are one sequence of random numbers.
@@ -306,8 +344,8 @@ void EnergyBound::fill_vector(GridWorkspace& workspace) noexcept {
   WichmannHill random;
   (void)random.seed(Generator::k2006, Span<const std::uint32_t>(kSeed));
   random.jump(begin);
-  for (double& number : workspace.numbers().from(begin).first(cells_)) {
-    number = random.next() - 0.5;
+  for (float& number : workspace.singles().from(begin).first(cells_)) {
+    number = static_cast<float>(random.next() - 0.5);
   }
   if (++vector_ == kRank) {
     vector_ = 0;
@@ -319,51 +357,56 @@ double EnergyBound::progress() const noexcept {
   if (done()) {
     return 1.0;
   }
-  return static_cast<double>(sweeps_ + checks_) / static_cast<double>(kSweeps + kMaxChecks);
+  // A check takes the time of several trials, and few are needed.
+  const std::size_t made =
+      sweeps_ + trials_ + kMaxTrials * (checks_ != 0 || phase_ == Phase::kCheck ? 1 : 0) + checks_;
+  return static_cast<double>(made) / static_cast<double>(kSweeps + 2 * kMaxTrials + kMaxChecks);
 }
 
 /// One product; with the last vector's, all vectors take the direction of their products.
-void EnergyBound::sweep(const ModalModel& model, GridWorkspace& workspace) noexcept {
-  PhiOperator phi;
-  (void)phi.set(model, proposal_s_, cells_);
-  const double shift = ascent_shift(model, proposal_s_ / static_cast<double>(cells_));
-  const Span<double> vectors = workspace.numbers().first(kRank * cells_);
-  const Span<double> products = workspace.numbers().from(kRank * cells_);
-  phi.multiply(vectors.from(vector_ * cells_).first(cells_),
-               products.from(vector_ * cells_).first(cells_));
+void EnergyBound::sweep(GridWorkspace& workspace) noexcept {
+  const Span<float> vectors = workspace.singles().first(kRank * cells_);
+  const Span<float> products = workspace.singles().from(kRank * cells_);
+  const Span<const float> vector = vectors.from(vector_ * cells_).first(cells_);
+  phi_.multiply(vector, products.from(vector_ * cells_).first(cells_));
   if (++vector_ < kRank) {
     return;
   }
   vector_ = 0;
   ++sweeps_;
+  take_directions(vectors, products);
+}
+
+/// The length of each cell's products, less the shift, takes the place of the first product.
+void EnergyBound::take_directions(Span<float> vectors, Span<float> products) const noexcept {
   for (std::size_t i = 0; i < cells_; ++i) {
-    double norm2 = 0.0;
+    float norm2 = 0.0F;
     for (std::size_t r = 0; r < kRank; ++r) {
-      const double value = products[r * cells_ + i] + shift * vectors[r * cells_ + i];
-      norm2 += value * value;
-      vectors[r * cells_ + i] = value;
+      float& vector = vectors[r * cells_ + i];
+      vector = products[r * cells_ + i] + shift_ * vector;
+      norm2 += vector * vector;
     }
-    const double length = sqrt(norm2);
-    const double scale = length > 0.0 ? 1.0 / length : 0.0;
+    const float scale = norm2 > kNoLength2 ? inverse_root(norm2) : 0.0F;
     for (std::size_t r = 0; r < kRank; ++r) {
       vectors[r * cells_ + i] *= scale;
     }
-    products[i] = length - shift;
+    products[i] = norm2 * scale - shift_;
   }
 }
 
 void EnergyBound::take_proposal(GridWorkspace& workspace) noexcept {
-  const Span<double> d = workspace.numbers().first(cells_);
-  const Span<double> lengths = workspace.numbers().from(kRank * cells_);
-  const double per_second = static_cast<double>(cells_) / proposal_s_;
+  const Span<float> d = workspace.singles().first(cells_);
+  const Span<float> lengths = workspace.singles().from(kRank * cells_);
+  const auto per_second =
+      static_cast<float>(phi_.scale() * static_cast<double>(cells_) / proposal_s_);
   double sum = 0.0;
   for (std::size_t i = 0; i < cells_; ++i) {
     d[i] = per_second * lengths[i];
-    sum += abs(d[i]);
+    sum += abs(static_cast<double>(d[i]));
   }
-  const double floor = kFloor * sum / static_cast<double>(cells_);
-  for (double& value : d) {
-    value = larger(value, floor);
+  const auto floor = static_cast<float>(kFloor * sum / static_cast<double>(cells_));
+  for (float& value : d) {
+    value = value > floor ? value : floor;
   }
   sum = 0.0;
   least_ = kInfinity;
@@ -373,9 +416,10 @@ void EnergyBound::take_proposal(GridWorkspace& workspace) noexcept {
     least_ = smaller(least_, value);
   }
   mean_ = sum / static_cast<double>(steps_);
+  trial_.set(check_, mean_);
 }
 
-double EnergyBound::shape(std::size_t step, Span<const double> d) const noexcept {
+double EnergyBound::shape(std::size_t step, Span<const float> d) const noexcept {
   const double cell_s = proposal_s_ / static_cast<double>(cells_);
   const double time_s =
       duration_s_ * (static_cast<double>(step) + 0.5) / static_cast<double>(steps_);
@@ -385,14 +429,15 @@ double EnergyBound::shape(std::size_t step, Span<const double> d) const noexcept
   const double proposal_time_s = smaller(time_s, larger(middle_s, from_end_s));
   const double place = proposal_time_s / cell_s - 0.5;
   if (!(place > 0.0)) {
-    return d[0];
+    return static_cast<double>(d[0]);
   }
   const double whole = floor(place);
   const auto cell = static_cast<std::size_t>(whole);
   if (cell + 1 >= cells_) {
-    return d[cells_ - 1];
+    return static_cast<double>(d[cells_ - 1]);
   }
-  return d[cell] + (place - whole) * (d[cell + 1] - d[cell]);
+  const auto before = static_cast<double>(d[cell]);
+  return before + (place - whole) * (static_cast<double>(d[cell + 1]) - before);
 }
 
 /// A positive lift raises all of d alike, which suits its weak end at T; a negative one shrinks it.
@@ -401,46 +446,80 @@ double EnergyBound::lifted(double d, double lift) const noexcept {
 }
 
 double EnergyBound::multiplier(std::size_t step, GridWorkspace& workspace) const noexcept {
-  return lifted(shape(step, workspace.numbers().first(cells_)), passed_);
+  return lifted(shape(step, workspace.singles().first(cells_)), passed_);
 }
 
-void EnergyBound::next_check(bool passed) noexcept {
-  (passed ? passed_ : failed_) = lift_;
-  ++checks_;
-  if (checks_ == kMaxChecks || passed_ - failed_ < kLiftResolution) {
-    phase_ = Phase::kDone;
-    return;
-  }
-  if (passed_ < kInfinity && failed_ > -kInfinity) {
-    lift_ = 0.5 * (passed_ + failed_);
-  } else {
-    lift_ *= passed && lift_ > 0.0 ? -3.0 : 3.0;
-  }
-  check_.restart();
+void EnergyBound::begin_lifts(double first) noexcept {
+  lift_ = first;
+  passed_ = kInfinity;
+  failed_ = -kInfinity;
   steps_left_ = steps_;
 }
 
-Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
-  if (phase_ == Phase::kFirstVectors) {
-    fill_vector(workspace);
-    return Status::kOk;
+/// Bisects once a lift has passed and one has failed. @returns False if they are near enough.
+bool EnergyBound::next_lift() noexcept {
+  steps_left_ = steps_;
+  if (!(passed_ < kInfinity)) {
+    lift_ *= 3.0;
+  } else if (failed_ > -kInfinity) {
+    lift_ = 0.5 * (passed_ + failed_);
+  } else {
+    lift_ *= lift_ > 0.0 ? -3.0 : 3.0;
   }
-  if (phase_ == Phase::kProposal) {
-    sweep(model, workspace);
-    if (sweeps_ == kSweeps) {
-      take_proposal(workspace);
-      phase_ = Phase::kCheck;
-      lift_ = kFirstLift;
-      passed_ = kInfinity;
-      failed_ = -kInfinity;
-      steps_left_ = steps_;
+  return passed_ - failed_ >= kLiftResolution;
+}
+
+/// The next lift on trial; at the end the least one that has passed, raised, to be checked.
+void EnergyBound::next_trial(bool passed) noexcept {
+  (passed ? passed_ : failed_) = lift_;
+  ++trials_;
+  trial_.restart();
+  if (next_lift() && trials_ < kMaxTrials) {
+    return;
+  }
+  phase_ = passed_ < kInfinity ? Phase::kCheck : Phase::kDone;
+  guess_ = passed_;
+  raise_ = kFirstRaise;
+  begin_lifts(guess_ + raise_);
+}
+
+/// The next lift to check: more raised than the one that has failed. The first one that passes is
+/// the result; with many modes the check then looks for a lower one, below the guess too.
+void EnergyBound::next_check(bool passed) noexcept {
+  (passed ? passed_ : failed_) = lift_;
+  ++checks_;
+  check_.restart();
+  const bool is_bisecting = count_of_modes_ >= kManyModes && checks_ < kMaxChecks;
+  const bool has_passed = passed_ < kInfinity;
+  if (has_passed && !(is_bisecting && passed_ - failed_ >= kLiftResolution)) {
+    phase_ = Phase::kDone;
+    bound_ = check_.completed(duration_s_ * lifted(mean_, passed_), lifted(least_, passed_));
+    return;
+  }
+  steps_left_ = steps_;
+  if (has_passed && failed_ > -kInfinity) {
+    lift_ = 0.5 * (passed_ + failed_);
+    return;
+  }
+  raise_ *= 3.0;
+  lift_ = has_passed ? guess_ - raise_ : guess_ + raise_;
+  phase_ = checks_ < kMaxChecks ? Phase::kCheck : Phase::kDone;
+}
+
+void EnergyBound::try_steps(Span<const float> d) noexcept {
+  const std::size_t trials_before = trials_;
+  const double inverse = 1.0 / mean_;
+  for (std::size_t i = 0; i < kTrialStepsAtOnce && trials_ == trials_before; ++i) {
+    --steps_left_;
+    const double value = lifted(shape(steps_left_, d), lift_);
+    const bool passed = trial_.step_back(static_cast<float>(inverse * value));
+    if (!passed || steps_left_ == 0) {
+      next_trial(passed);
     }
-    return Status::kOk;
   }
-  if (phase_ == Phase::kDone) {
-    return Status::kOk;
-  }
-  const Span<const double> d = workspace.numbers().first(cells_);
+}
+
+void EnergyBound::check_steps(Span<const float> d) noexcept {
   const std::size_t checks_before = checks_;
   for (std::size_t i = 0; i < kStepsAtOnce && checks_ == checks_before; ++i) {
     --steps_left_;
@@ -448,14 +527,35 @@ Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noex
     if (!passed || steps_left_ == 0) {
       next_check(passed);
     }
+    if (done()) {
+      return;
+    }
   }
-  if (!done()) {
-    return Status::kOk;
+}
+
+Status EnergyBound::step(const ModalModel& /*model*/, GridWorkspace& workspace) noexcept {
+  switch (phase_) {
+    case Phase::kFirstVectors:
+      fill_vector(workspace);
+      return Status::kOk;
+    case Phase::kProposal:
+      sweep(workspace);
+      if (sweeps_ == kSweeps) {
+        take_proposal(workspace);
+        phase_ = Phase::kTrial;
+        begin_lifts(kFirstLift);
+      }
+      return Status::kOk;
+    case Phase::kTrial:
+      try_steps(workspace.singles().first(cells_));
+      break;
+    case Phase::kCheck:
+      check_steps(workspace.singles().first(cells_));
+      break;
+    case Phase::kDone:
+      return Status::kOk;
   }
-  if (passed_ < kInfinity) {
-    bound_ = check_.completed(duration_s_ * lifted(mean_, passed_), lifted(least_, passed_));
-  }
-  return bound_ < kInfinity ? Status::kOk : Status::kNotProven;
+  return done() && !(bound_ < kInfinity) ? Status::kNotProven : Status::kOk;
 }
 
 }  // namespace emax

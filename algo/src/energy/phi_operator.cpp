@@ -87,17 +87,6 @@ std::size_t stretch_begin(Signs signs, std::size_t end) noexcept {
 }
 std::size_t stretch_begin(Span<const double>, std::size_t end) noexcept { return end - 1; }
 
-/// z^n by repeated squaring, a fifth of the cost of an exponential. Its error is n times that of z,
-/// relative to 1: for kMaxCells 1e-12.
-Complex power(Complex z, std::size_t n) noexcept {
-  Complex result{1.0, 0.0};
-  for (; n != 0; n /= 2) {
-    result = n % 2 != 0 ? z * result : result;
-    z = z * z;
-  }
-  return result;
-}
-
 }  // namespace
 
 // Two modes at a time, which with their states and factors fit into the registers of a processor,

@@ -39,12 +39,13 @@ double dot(Span<const double> a, Span<const double> b) noexcept {
 class EnergyShape {
  public:
   EnergyShape(const ModalModel& model, Span<double> scratch) noexcept
-      : model_(model), modes_(model.modes()), decays_(scratch.first(kDecays)) {
-    Span<double> rest = scratch.from(kDecays);
+      : model_(model), modes_(model.modes()) {
+    Span<double> rest = scratch;
     for (Span<double>* vector : {&gradient, &slope, &step, &residual_, &direction_, &image_}) {
       *vector = rest.first(kMaxSwitches);
       rest = rest.from(kMaxSwitches);
     }
+    decays_ = rest;
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       correlation_[m] = model.correlation(m);
       self_ += correlation_[m].re;
@@ -80,8 +81,6 @@ class EnergyShape {
   Span<double> step;      ///< In s.
 
  private:
-  static constexpr std::size_t kDecays = 2 * kMaxModes * (kMaxSwitches + 1);
-
   void apply_between_switches(Span<const double> vector, Span<double> result) const noexcept;
   void add_end(const Complex* output, Complex* back) const noexcept;
 

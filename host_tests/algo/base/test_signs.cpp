@@ -47,5 +47,33 @@ TEST(Signs, RunsEndWhereTheSignChanges) {
   }
 }
 
+TEST(Signs, DifferencesAreFoundWhereTheyAre) {
+  std::mt19937_64 random(18);
+  for (std::size_t cells = 1; cells <= kMostCells; ++cells) {
+    std::uint32_t words[sign_words(kMostCells)];
+    std::uint32_t other_words[sign_words(kMostCells)];
+    for (std::size_t i = 0; i < sign_words(kMostCells); ++i) {
+      words[i] = static_cast<std::uint32_t>(random());
+      other_words[i] = static_cast<std::uint32_t>(random());
+    }
+    const Signs signs(Span<std::uint32_t>(words), cells);
+    const Signs other(Span<std::uint32_t>(other_words), cells);
+    set_random_runs(signs, random);
+    set_random_runs(other, random);
+    for (std::size_t i = 0; i <= cells; ++i) {
+      std::size_t differs = i;
+      while (differs != cells && signs.is_positive(differs) == other.is_positive(differs)) {
+        ++differs;
+      }
+      std::size_t agrees = i;
+      while (agrees != cells && signs.is_positive(agrees) != other.is_positive(agrees)) {
+        ++agrees;
+      }
+      ASSERT_EQ(signs.first_difference(other, i), differs) << "cell " << i << " of " << cells;
+      ASSERT_EQ(signs.first_agreement(other, i), agrees) << "cell " << i << " of " << cells;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace emax

@@ -15,6 +15,9 @@ constexpr std::size_t sign_words(std::size_t cells) noexcept { return (cells + 3
 /// pattern of -1.
 class Signs {
  public:
+  /// Of a word.
+  static constexpr std::size_t kBits = 32;
+
   /// @param[in] words At least `sign_words(cells)` of them.
   constexpr Signs(Span<std::uint32_t> words, std::size_t cells) noexcept
       : words_(words.data()), size_(cells) {}
@@ -64,6 +67,20 @@ class Signs {
   void turn(std::size_t cell) const noexcept {
     words_[cell / kBits] ^= std::uint32_t{1} << (cell % kBits);
   }
+  /// 32 signs at once, the cell of the lowest number in the lowest bit. In the last word, bits
+  /// beyond the pattern may be anything.
+  std::uint32_t word(std::size_t index) const noexcept { return words_[index]; }
+  void set_word(std::size_t index, std::uint32_t signs) const noexcept { words_[index] = signs; }
+
+  /// The first cell from `cell` on whose sign differs from that of another pattern of the same
+  /// size, or `size()`.
+  std::size_t first_difference(Signs other, std::size_t cell) const noexcept {
+    return first_of(other, cell, 0);
+  }
+  /// The first cell from `cell` on with the sign of another pattern of the same size, or `size()`.
+  std::size_t first_agreement(Signs other, std::size_t cell) const noexcept {
+    return first_of(other, cell, ~std::uint32_t{0});
+  }
   /// Takes the signs of a pattern of the same size.
   void copy(Signs other) const noexcept {
     for (std::size_t i = 0; i < sign_words(size_); ++i) {
@@ -72,7 +89,23 @@ class Signs {
   }
 
  private:
-  static constexpr std::size_t kBits = 32;
+  /// The first cell where the two signs differ, all answers turned by `turned`.
+  std::size_t first_of(Signs other, std::size_t cell, std::uint32_t turned) const noexcept {
+    if (cell >= size_) {
+      return size_;
+    }
+    std::size_t index = cell / kBits;
+    std::uint32_t found =
+        (words_[index] ^ other.words_[index] ^ turned) & (~std::uint32_t{0} << (cell % kBits));
+    while (found == 0) {
+      if (++index == sign_words(size_)) {
+        return size_;
+      }
+      found = words_[index] ^ other.words_[index] ^ turned;
+    }
+    const std::size_t first = kBits * index + static_cast<std::size_t>(__builtin_ctz(found));
+    return first < size_ ? first : size_;
+  }
 
   std::uint32_t* words_;
   std::size_t size_;

@@ -10,6 +10,8 @@
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/energy/fixed_point.hpp"
+#include "emax/energy/float_phi.hpp"
+#include "emax/energy/grid_climb.hpp"
 #include "emax/energy/grid_workspace.hpp"
 #include "emax/energy/phi_buffer.hpp"
 #include "emax/energy/phi_operator.hpp"
@@ -46,7 +48,8 @@ struct MaximumEnergy {
 void clear(MaximumEnergy& maximum) noexcept;
 
 /// The number of cells of the grid of `Method::kBest`: cells of at most 1/(12 f) with f the larger
-/// of f0 and fc, so that the resonance is seen, and at least 24 of them.
+/// of f0 and fc, so that the resonance is seen, and at least 24 of them. For the energy difference
+/// 4 fc counts instead of fc: there, fast switching takes away what the filter would pass.
 ///
 /// @returns kMaxCells + 1 if it takes more than kMaxCells.
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;
@@ -111,25 +114,33 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 ///     }
 ///
 /// kBest tries, always in this order: the constant signal, 4 columns of Phi, 4 periodic signals
-/// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs.
+/// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs; 49
+/// for the energy difference, which has more and higher local maxima.
 /// (Random signs are the best starts: the first steps of the fixed point leave in them what the
 /// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
-/// gains most is turned (`PulseTurn`) and the fixed point runs again, until no pulse gains.
-/// A pulse inside a run of equal signs is a new pair of switches, one that fills a run takes a pair
-/// away, and one at the end of a run moves a switch. A climb that ends within 1 % of the highest
-/// one so far is refined in continuous time. At last the best one goes back to the grid, which may
-/// have gains to offer again now that its switches have moved, up to 4 times. Of equals the first
-/// one wins, so the result is the same on every target. 2.6 KiB beside the workspace.
+/// gains most is turned and the fixed point runs again, until no pulse gains (`GridClimb`, in
+/// single precision). A pulse inside a run of equal signs is a new pair of switches, one that fills
+/// a run takes a pair away, and one at the end of a run moves a switch. A climb that ends within 1
+/// % of the highest one so far is refined in continuous time, in `double`. At last the best one
+/// goes back to the grid, which may have gains to offer again now that its switches have moved, up
+/// to 4 times, in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the
+/// result is the same on every target. 4.2 KiB beside the workspace.
 ///
-/// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
-/// few switches are best, and up to 250 where it is a hundred switches; a product costs some 25
-/// instructions per cell and mode, and looking for a pulse two thirds of a product.
+/// Effort: at most kMaxStarts + kPolishings climbs. One climb takes 10 to 40 updates of the product
+/// where few switches are best, and up to 250 where it is a hundred switches; an update costs some
+/// 4 instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half
+/// of that.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 4;
   static constexpr std::size_t kHalfPeriods = 4;
   static constexpr std::size_t kRandomStarts = 20;
   static constexpr std::size_t kStarts = 1 + kColumnStarts + kHalfPeriods + kRandomStarts;
+  /// For the energy difference.
+  static constexpr std::size_t kMaxStarts = 2 * kStarts;
+  /// Climbs from the best signal with a stretch turned or made random; as many more for the energy
+  /// difference.
+  static constexpr std::size_t kKicks = 12;
   static constexpr std::size_t kPolishings = 4;
 
   /// Lays out the grid. Model and settings must stay as they are until the search is done, and
@@ -168,38 +179,76 @@ class EnergySearch {
   static constexpr std::size_t kWorkPerStep = 640;
 
  private:
-  enum class Phase : std::uint8_t { kStart, kClimb, kTurn, kRefine };
+  enum class Phase : std::uint8_t {
+    kPaperStart,
+    kStart,
+    kTables,
+    kGridClimb,
+    kClimb,
+    kTurn,
+    kRefine
+  };
 
-  std::size_t step_once(const PhiOperator& phi, const ModalModel& model, GridWorkspace& workspace,
-                        Span<double> trace) noexcept;
-  void begin_climb(const PhiOperator& phi, GridWorkspace& workspace) noexcept;
-  void set_start(const PhiOperator& phi, Signs signs, Span<double> product) noexcept;
+  /// What a start has climbed to, divided by the scale of the FloatPhi; equal ones are of the same
+  /// pattern.
+  struct End {
+    float energy;
+    std::uint32_t pattern;
+  };
+
+  std::size_t step_with_operator(const PhiOperator& phi, const ModalModel& model,
+                                 GridWorkspace& workspace, Span<double> trace) noexcept;
+  std::size_t step_without_operator(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  bool needs_operator() const noexcept;
+  std::size_t step_grid_climb(GridWorkspace& workspace) noexcept;
+  std::size_t step_refinement(const ModalModel& model, GridWorkspace& workspace) noexcept;
+  std::size_t fill_tables(const PhiOperator& phi, const ModalModel& model,
+                          GridWorkspace& workspace) noexcept;
+  Span<float> table(GridWorkspace& workspace) const noexcept;
+  Span<float> pulses(GridWorkspace& workspace) const noexcept;
+  Span<float> product(GridWorkspace& workspace) const noexcept;
+  void begin_climb(GridWorkspace& workspace) noexcept;
+  void set_start(GridWorkspace& workspace) noexcept;
+  void set_to_column(std::size_t cell, GridWorkspace& workspace) const noexcept;
+  void set_to_half_periods(double half_period_s, Signs signs) const noexcept;
   void set_to_result(Signs signs) const noexcept;
+  void set_to_stretched_result(std::size_t number, Signs signs) const noexcept;
+  void set_to_kick(Signs signs) const noexcept;
   void run_fixed_point() noexcept;
   void end_fixed_point(std::size_t room) noexcept;
   std::size_t step_turn(const PhiOperator& phi, const ModalModel& model,
                         GridWorkspace& workspace) noexcept;
+  void end_grid_climb(GridWorkspace& workspace) noexcept;
   void end_climb(const ModalModel& model, GridWorkspace& workspace) noexcept;
   void end_refinement(const SwitchingSignal& refined) noexcept;
   void next_climb() noexcept;
-  bool is_worth_refining(double energy) const noexcept;
+  bool is_worth_refining() const noexcept;
   void take(const SwitchingSignal& signal, double energy) noexcept;
-  bool is_polishing() const noexcept { return climbs_made_ >= kStarts; }
+  bool is_start() const noexcept { return climbs_made_ < starts_; }
+  bool is_polishing() const noexcept { return climbs_made_ >= starts_ + kicks_; }
 
   MaximumEnergy result_ = {};
   SearchSettings settings_ = {};
+  FloatPhi float_phi_ = {};
+  GridClimb grid_climb_ = {};
   FixedPoint fixed_point_ = {};
   PulseTurn pulse_turn_ = {};
   Refiner refiner_ = {};
-  double ends_[kStarts] = {};  // What each start has climbed to.
+  End ends_[kMaxStarts] = {};
+  End end_ = {};                 // Of this climb
+  float energy_to_beat_ = 0.0F;  // By a kick: that of the best pattern
+  double climb_energy_ = 0.0;
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
   double unstorable_energy_ = 0.0;
-  double climb_energy_ = 0.0;
   std::size_t trace_count_ = 0;
   std::size_t climbs_made_ = 0;
   std::size_t climbs_ = 0;
+  std::size_t starts_ = 0;
+  std::size_t kicks_ = 0;
   std::size_t cells_ = 0;
+  std::size_t tables_filled_ = 0;  // In cells
+  std::size_t modes_ = 0;
   std::size_t iterations_ = 0;  // Of the first fixed point of this climb.
   std::size_t turns_ = 0;
   Phase phase_ = Phase::kStart;

@@ -36,6 +36,17 @@ class PhiOperator {
   std::size_t cells() const noexcept { return cells_; }
   double duration_s() const noexcept { return duration_s_; }
 
+  /// What the operator is made of, mode by mode: the factor of one cell's width, e^(p h).
+  Complex step(std::size_t mode) const noexcept { return step_[mode]; }
+  /// The Toeplitz part at a distance of d >= 1 cells is Re sum correlation step^(d - 1).
+  Complex correlation(std::size_t mode) const noexcept { return correlation_[mode]; }
+  /// What the last cell leaves in the mode's output at T.
+  Complex end(std::size_t mode) const noexcept { return end_[mode]; }
+  /// The diagonal of the Toeplitz part.
+  double endless_diagonal() const noexcept { return endless_diagonal_; }
+  /// The energy of a pulse in an endless record, 1 <= width <= kMaxPulse.
+  double endless_pulse(std::size_t width) const noexcept { return endless_pulse_[width - 1]; }
+
   /// product = Phi signs; both have `cells()` elements.
   /// Two complex products and two complex sums per mode, cell and direction.
   void multiply(Signs signs, Span<double> product) const noexcept;

@@ -11,9 +11,13 @@
 
 namespace emax {
 
+/// The first doubles of their scratch, as many as `refine()` and `energy_gradient()` touch.
+constexpr std::size_t refinement_scratch(std::size_t modes, std::size_t switches) noexcept {
+  return 6 * kMaxSwitches + 2 * modes * (switches + 1);
+}
+
 /// The number of doubles that `refine()` and `energy_gradient()` work in, whatever the signal.
-inline constexpr std::size_t kRefinementScratch =
-    2 * kMaxModes * (kMaxSwitches + 1) + 6 * kMaxSwitches;
+inline constexpr std::size_t kRefinementScratch = refinement_scratch(kMaxModes, kMaxSwitches);
 
 class EnergyShape;
 
