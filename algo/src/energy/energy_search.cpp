@@ -159,12 +159,13 @@ double EnergySearch::progress() const noexcept {
 
 Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
                           Span<double> trace) noexcept {
+  has_refined_ = false;
   if (done()) {
     return Status::kOk;
   }
   PhiOperator phi;
   (void)phi.set(model, settings_.duration_s, cells_);  // `start()` has seen that both are valid.
-  for (std::size_t work = 0; work < kWorkPerStep && !done();) {
+  for (std::size_t work = 0; work < kWorkPerStep && !done() && !has_refined_;) {
     work += step_once(phi, model, workspace, trace);
   }
   // A signal with more switches than the table holds must not be passed over in silence if it beats
@@ -319,6 +320,7 @@ void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) 
 }
 
 void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
+  has_refined_ = true;
   const double before = result_.energy;
   take(refined, refiner_.result().energy);
   // The grid has nothing more to offer.

@@ -46,7 +46,7 @@ Status start(const TrialSettings& settings, const ModalModel& model) {
   best = search.result();
   status = trials.start(model, best, settings);
   while (status == Status::kOk && !trials.ready()) {
-    trials.prepare(best, workspace);
+    trials.prepare(search, workspace);
   }
   return status;
 }
@@ -79,12 +79,12 @@ TEST(EnergyTrials, DoNotDependOnTheirOrder) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   std::vector<double> forward;
   for (std::uint32_t t = 0; t < 50; ++t) {
-    forward.push_back(trials.energy(t, best, workspace));
+    forward.push_back(trials.energy(t, workspace));
   }
   for (std::uint32_t t = 50; t-- > 0;) {
-    EXPECT_EQ(trials.energy(t, best, workspace), forward[t]);
+    EXPECT_EQ(trials.energy(t, workspace), forward[t]);
   }
-  EXPECT_EQ(trials.energy(17, best, workspace), forward[17]);
+  EXPECT_EQ(trials.energy(17, workspace), forward[17]);
 }
 
 TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
@@ -94,7 +94,7 @@ TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
     for (std::uint32_t t = 0; t < 12; ++t) {
       const Accelerometer device = trials.device(t);
       const double expected = full_search(device, settings);
-      EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
+      EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
     }
   }
 }
@@ -130,7 +130,7 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
       SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
       // 1e-9 is promised, 1e-10 is seen to at the corners, and inside them it is better.
-      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-10 * std::fabs(expected)) << t;
+      ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-10 * std::fabs(expected)) << t;
       // And it is the energy of the signal that has been predicted.
       const double of_signal = trials.scale() * energy(trials.model(), workspace.signal());
       ASSERT_NEAR(trials.energy(), of_signal,
@@ -173,7 +173,7 @@ TEST(EnergyTrials, WhereNoQuadraticHoldsEachTrialIsARefinement) {
     ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
     SwitchingSignal signal = search.result().signal;
     const double expected = refine(moved, signal, workspace.refinement()).energy;
-    EXPECT_EQ(trials.energy(t, best, workspace), expected) << t;
+    EXPECT_EQ(trials.energy(t, workspace), expected) << t;
   }
 }
 
@@ -237,10 +237,10 @@ TEST(NormalTrials, TakeFourNumbersEachAndReplay) {
     const double z = std::sqrt(-2.0 * std::log(u[0])) * std::cos(2.0 * pi * u[1]);
     EXPECT_NEAR(trials.device(t).sensitivity, 1.037 + 3e-3 * z, 1e-14) << t;
   }
-  const double seventeen = trials.energy(17, best, workspace);
-  const double three = trials.energy(3, best, workspace);
-  EXPECT_EQ(trials.energy(17, best, workspace), seventeen);
-  EXPECT_EQ(trials.energy(3, best, workspace), three);
+  const double seventeen = trials.energy(17, workspace);
+  const double three = trials.energy(3, workspace);
+  EXPECT_EQ(trials.energy(17, workspace), seventeen);
+  EXPECT_EQ(trials.energy(3, workspace), three);
 }
 
 TEST(NormalTrials, AreWhatRefinementToTheEndFinds) {
@@ -252,7 +252,7 @@ TEST(NormalTrials, AreWhatRefinementToTheEndFinds) {
       ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
       SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
-      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-9 * expected) << t;
+      ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-9 * expected) << t;
     }
   }
 }
@@ -289,24 +289,24 @@ TEST(NormalTrials, TakeAParameterWithoutUncertaintyAndRefuseWhatIsNoCovariance) 
 TEST(EnergyTrials, PaperMethodRunsTheWholeFixedPointInEachTrial) {
   const TrialSettings settings = settings_for(Method::kPaper, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, best, workspace), 0.00448654991209,
+  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, workspace), 0.00448654991209,
               0.6e-14);
   for (std::uint32_t t = 0; t < 5; ++t) {
     const Accelerometer device = trials.device(t);
     const double expected = full_search(device, settings);
-    EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
+    EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
   }
 }
 
 TEST(EnergyTrials, LargestCornerOfTheBoxMeetsTheKnownNumber) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   // Eight digits are known.
-  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, best, workspace);
+  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, workspace);
   EXPECT_NEAR(corner, 0.0051346992, 0.5e-10);
   for (const double s : {1.034, 1.040}) {
     for (const double f0_hz : {4067.0, 4079.0}) {
       for (const double damping : {0.3178, 0.3186}) {
-        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, best, workspace), corner);
+        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, workspace), corner);
       }
     }
   }
@@ -316,20 +316,20 @@ TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivit
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   settings.gain_follows = true;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double at_estimate = trials.energy_of(kPaperDevice, best, workspace);
-  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace);
+  const double at_estimate = trials.energy_of(kPaperDevice, workspace);
+  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, workspace);
   EXPECT_NEAR(at_double, 4.0 * at_estimate, 1e-13 * at_double);
   settings.gain_follows = false;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_EQ(trials.energy_of(kPaperDevice, best, workspace), at_estimate);
+  EXPECT_EQ(trials.energy_of(kPaperDevice, workspace), at_estimate);
   // A filter that stays at 1.037 leaves a lasting error of 1.037 a.
-  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace), at_double);
+  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, workspace), at_double);
 }
 
 TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double before = trials.energy(3, best, workspace);
+  const double before = trials.energy(3, workspace);
   const auto refuse = [&](const ParameterBox& box) {
     settings.box = box;
     return trials.start(paper_model(), best, settings);
@@ -343,7 +343,7 @@ TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
             Status::kOk);
   settings.box = {0.003, 6.0, 0.2};
   EXPECT_EQ(trials.start(heavy, best, settings), Status::kOverdamped);
-  EXPECT_EQ(trials.energy(3, best, workspace), before);
+  EXPECT_EQ(trials.energy(3, workspace), before);
 }
 
 }  // namespace

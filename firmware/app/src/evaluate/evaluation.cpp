@@ -26,8 +26,8 @@ constexpr char kBoxTooLarge[] =
     "The ranges of the parameters, estimate minus to plus standard uncertainty, leave what a "
     "device may be (S and f0 above 0, damping from 1e-4 to below 1); give smaller uncertainties.";
 constexpr char kNormalTooWide[] =
-    "Six standard deviations from the estimate leave what a device may be (S and f0 above 0, "
-    "damping from 1e-4 to below 1), or the covariance is none; give smaller uncertainties.";
+    "Draws of the parameters leave what a device may be (S and f0 above 0, damping from 1e-4 to "
+    "below 1) 65 times in a row, or the covariance is none; give smaller uncertainties.";
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
     "below 1, because fit and grid follow the resonance.";
@@ -321,9 +321,11 @@ Failure Evaluation::check_box(const Settings& settings, Goal goal) const noexcep
       !is_uncertainty(u.damping)) {
     return {Status::kInvalidArgument, Stage::kIdle, kWrongUncertainty};
   }
+  // Normal draws that are no device are drawn again.
   const bool is_box = settings.distribution == Distribution::kBox;
-  const double widest = trial_scale(settings) * (is_box ? 1.0 : EnergyTrials::kMaxDeviations);
-  if (has_trials(goal) && (!is_side_valid(device_, -widest) || !is_side_valid(device_, widest))) {
+  const double widest = trial_scale(settings);
+  if (has_trials(goal) && is_box &&
+      (!is_side_valid(device_, -widest) || !is_side_valid(device_, widest))) {
     return {Status::kInvalidArgument, Stage::kMonteCarlo, width_reason(settings.distribution)};
   }
   return {};

@@ -69,6 +69,8 @@ double Evaluation::progress_of(const EvaluationWorkspace& workspace) const noexc
       return workspace.search_.progress();
     case Stage::kBound:
       return workspace.part_.bound.bound.progress();
+    case Stage::kPrediction:
+      return workspace.part_.trial.trials.progress();
     case Stage::kAdaptive:
       return adaptive_progress(workspace.part_.trial.adaptive);
     case Stage::kMonteCarlo:
@@ -85,7 +87,6 @@ double Evaluation::progress_of(const EvaluationWorkspace& workspace) const noexc
     }
     case Stage::kIdle:
     case Stage::kModel:
-    case Stage::kPrediction:
     case Stage::kDone:
     case Stage::kFailed:
       return progress_;
@@ -236,16 +237,16 @@ void Evaluation::begin_trials(EvaluationWorkspace& workspace) noexcept {
     (void)fail(status, Stage::kMonteCarlo, width_reason(settings_.distribution));
     return;
   }
-  workspace.grid_.share_with_store();
   stage_ = Stage::kPrediction;
 }
 
 void Evaluation::step_prediction(EvaluationWorkspace& workspace) noexcept {
   EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
   if (!part.trials.ready()) {
-    part.trials.prepare(maximum_, workspace.grid_);
+    part.trials.prepare(workspace.search_, workspace.grid_);
     return;
   }
+  workspace.grid_.share_with_store();
   if (!settings_.adaptive) {
     begin_monte_carlo(settings_.trials, workspace);
     return;
@@ -266,7 +267,7 @@ bool Evaluation::advance_trial(std::uint32_t trial, EvaluationWorkspace& workspa
   if (trial_runs_) {
     trials.step(workspace.grid_);
   } else {
-    trials.begin(trials.device(trial), maximum_, workspace.grid_);
+    trials.begin(trial, workspace.grid_);
   }
   trial_runs_ = !trials.done();
   return trials.done();
@@ -276,7 +277,7 @@ void Evaluation::run_slice(EvaluationWorkspace& workspace) noexcept {
   EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
   MonteCarloStore& store = workspace.grid_.store();
   const bool adapts = stage_ == Stage::kAdaptive;
-  const std::size_t work_of_trial = part.trials.work(maximum_);
+  const std::size_t work_of_trial = part.trials.work();
   for (std::size_t work = 0; work < kWorkPerStep;) {
     if (adapts ? part.adaptive.done() : part.monte_carlo.done()) {
       return;
@@ -306,6 +307,12 @@ void Evaluation::run_slice(EvaluationWorkspace& workspace) noexcept {
   }
 }
 
+/// Why trials have failed.
+const char* Evaluation::trials_reason(const EvaluationWorkspace& workspace) const noexcept {
+  return workspace.part_.trial.trials.is_exhausted() ? width_reason(settings_.distribution)
+                                                     : kTrialsFailed;
+}
+
 void Evaluation::step_adaptive(EvaluationWorkspace& workspace) noexcept {
   run_slice(workspace);
   const AdaptiveTrials& adaptive = workspace.part_.trial.adaptive;
@@ -314,7 +321,7 @@ void Evaluation::step_adaptive(EvaluationWorkspace& workspace) noexcept {
   }
   adaptive_result_ = adaptive.result();
   if (adaptive_result_.status != Status::kOk) {
-    (void)fail(adaptive_result_.status, Stage::kAdaptive, kTrialsFailed);
+    (void)fail(adaptive_result_.status, Stage::kAdaptive, trials_reason(workspace));
     return;
   }
   begin_monte_carlo(adaptive_result_.trials, workspace);
@@ -339,9 +346,10 @@ void Evaluation::step_monte_carlo(EvaluationWorkspace& workspace) noexcept {
     return;
   }
   monte_carlo_.take(part.monte_carlo, workspace.grid_.store());
+  monte_carlo_.take(part.trials);
   const MonteCarloResult& result = monte_carlo_.result();
   if (result.status != Status::kOk) {
-    (void)fail(result.status, Stage::kMonteCarlo, kTrialsFailed);
+    (void)fail(result.status, Stage::kMonteCarlo, trials_reason(workspace));
     return;
   }
   device_at_maximum_ = part.trials.device(result.trial_of_maximum);
@@ -356,8 +364,8 @@ void Evaluation::step_monte_carlo(EvaluationWorkspace& workspace) noexcept {
 }
 
 void Evaluation::step_guard(EvaluationWorkspace& workspace) noexcept {
-  (void)guard_.step(workspace.part_.trial.trials, maximum_, workspace.search_,
-                    workspace.grid_);  // A search that fails counts as disagreement.
+  // A search that fails counts as disagreement.
+  (void)guard_.step(workspace.part_.trial.trials, workspace.search_, workspace.grid_);
   if (guard_.done()) {
     has_monte_carlo_ = true;
     go_on(workspace);

@@ -37,7 +37,7 @@ enum class Stage : std::uint8_t {
   kFitDraws,    ///< Covariance of the fit by Monte Carlo draws.
   kEnergy,      ///< The largest energy at the estimate.
   kBound,       ///< What no signal can exceed.
-  kPrediction,  ///< How the best signal changes over the ranges of the parameters.
+  kPrediction,  ///< Which signals may be the best over the ranges, and how their energies change.
   kAdaptive,    ///< Number of trials by JCGM 101 7.9.
   kMonteCarlo,
   kGuard,  ///< Full searches for some of the trials.
@@ -93,11 +93,24 @@ class TrialResults {
   /// The number of values in equal bins from the smallest to the largest.
   Span<const std::uint32_t> histogram() const noexcept { return Span<const std::uint32_t>(rows_); }
 
+  /// Normal draws that were no device and were made again; more than 1 % of the trials deserve a
+  /// warning.
+  std::uint32_t redraws() const noexcept { return redraws_; }
+  /// The signals that the trials took the largest energy of.
+  const BranchNotes& branches() const noexcept { return branches_; }
+
   /// Takes over the results of a procedure that is done.
   void take(const MonteCarlo& monte_carlo, const MonteCarloStore& store) noexcept;
+  /// Takes over what the trials themselves know.
+  void take(const EnergyTrials& trials) noexcept {
+    redraws_ = trials.redraws();
+    branches_ = trials.notes();
+  }
 
  private:
   MonteCarloResult result_ = all_zero<MonteCarloResult>();
+  BranchNotes branches_;
+  std::uint32_t redraws_ = 0;
   std::uint32_t rows_[kRows] = {};
 };
 
@@ -290,6 +303,7 @@ class Evaluation {
   double progress_of(const EvaluationWorkspace& workspace) const noexcept;
   double adaptive_progress(const AdaptiveTrials& adaptive) const noexcept;
   void step_stage(EvaluationWorkspace& workspace) noexcept;
+  const char* trials_reason(const EvaluationWorkspace& workspace) const noexcept;
   bool advance_trial(std::uint32_t trial, EvaluationWorkspace& workspace) noexcept;
   void run_slice(EvaluationWorkspace& workspace) noexcept;
 
