@@ -24,7 +24,7 @@ void BranchPool::clear() noexcept {
 }
 
 /// A switch that falls on another one takes both away, as a refinement would.
-void BranchPool::add(const SwitchingSignal& signal) noexcept {
+void BranchPool::add(std::size_t place, const SwitchingSignal& signal) noexcept {
   Branch& branch = branches_[count_];
   const double scale = kTimeParts / signal.duration_s();
   std::size_t count = 0;
@@ -42,6 +42,7 @@ void BranchPool::add(const SwitchingSignal& signal) noexcept {
   }
   branch.count = static_cast<std::uint16_t>(count);
   branch.known = 0;
+  branch.home = static_cast<std::uint16_t>(place);
   ++count_;
 }
 
@@ -104,7 +105,7 @@ void BranchPool::offer(std::size_t place, const SwitchingSignal& signal, double 
     }
     remove(weakest);
   }
-  add(signal);
+  add(place, signal);
   know(count_ - 1, place, energy);
 }
 

@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax {
 namespace {
 
 /// What a polynomial may be off by, as part of the energy,
 constexpr double kAcceptedError = 1e-10;
-/// and for the normal distribution as part of the standard deviation of the energy.
+/// or if that is more, as part of the standard deviation of the energy over the draws.
 constexpr double kAcceptedDeviation = 1e-6;
 /// The farthest from the estimate that polynomials of the normal distribution hold, in standard
 /// deviations along each axis; and where its corners are.
@@ -27,6 +28,11 @@ constexpr double kDoubt = 8.0;
 /// best at all nodes and still be the best between them.
 constexpr double kRoomBetweenNodes = 0.05;
 constexpr double kSame = 1e-9;
+/// On the way from one device to another a refinement is made wherever the resonance has moved by
+/// this angle, as far back as it is remembered. Longer legs can end on another signal.
+constexpr double kLeg_rad = 0.25;
+constexpr double kMostLegs = 32.0;
+constexpr double kMemory = 3.0;  // In time constants.
 
 /// Van der Corput's sequence: the digits of a number behind the point, in reverse.
 double radical_inverse(std::size_t number, std::size_t base) noexcept {
@@ -59,7 +65,7 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
     axes_[a] = draws.moves(a, gain_follows);
   }
   pool_.clear();
-  pool_.add(best.signal);
+  pool_.add(0, best.signal);
   degree_ = 0;
   terms_ = 0;
   tolerance_ = 0.0;
@@ -205,39 +211,72 @@ bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noex
   return true;
 }
 
-void EnergyBranches::start_refinement(std::size_t branch, GridWorkspace& workspace) noexcept {
+std::size_t EnergyBranches::legs_between(const Accelerometer& from,
+                                         const Accelerometer& to) const noexcept {
+  const double w0 = kTwoPi * from.natural_frequency_hz;
+  const double memory_s = std::min(search_.duration_s, kMemory / (w0 * from.damping));
+  const double moved_rad =
+      kTwoPi * abs(to.natural_frequency_hz - from.natural_frequency_hz) * memory_s;
+  return 1U + static_cast<std::size_t>(std::min(moved_rad / kLeg_rad, kMostLegs));
+}
+
+/// Refines a branch for a device, coming from the one that it was found at.
+void EnergyBranches::start_refinement(const DeviceDraws& draws, std::size_t branch,
+                                      const Accelerometer& device,
+                                      GridWorkspace& workspace) noexcept {
   pool_.load(branch, search_.duration_s, workspace.refinement(), workspace.signal());
-  refiner_.start(workspace.signal());
+  target_ = device;
+  home_ = draws.device_at(place_at(pool_.home(branch)));
+  legs_ = legs_between(home_, device);
+  leg_ = 0;
+  begin_leg(workspace);
   is_refining_ = true;
+}
+
+void EnergyBranches::begin_leg(GridWorkspace& workspace) noexcept {
+  ++leg_;
+  if (leg_ == legs_) {
+    set_device(target_);
+  } else {
+    const double part = static_cast<double>(leg_) / static_cast<double>(legs_);
+    const auto between = [part](double from, double to) { return from + part * (to - from); };
+    set_device({between(home_.sensitivity, target_.sensitivity),
+                between(home_.natural_frequency_hz, target_.natural_frequency_hz),
+                between(home_.damping, target_.damping)});
+  }
+  refiner_.start(workspace.signal());
 }
 
 /// @returns True with the last step.
 bool EnergyBranches::step_refinement(GridWorkspace& workspace) noexcept {
   refiner_.step(model_, workspace.signal(), workspace.refinement());
+  if (refiner_.done() && leg_ < legs_) {
+    begin_leg(workspace);
+  }
   is_refining_ = !refiner_.done();
   return refiner_.done();
 }
 
 /// A step of the refinement of the next branch. @returns True if it is refined.
-bool EnergyBranches::refine_at(const Accelerometer& device, GridWorkspace& workspace) noexcept {
+bool EnergyBranches::refine_at(const DeviceDraws& draws, const DeviceDraws::Place& place,
+                               GridWorkspace& workspace) noexcept {
   if (!is_refining_) {
-    set_device(device);
-    start_refinement(branch_, workspace);
+    start_refinement(draws, branch_, draws.device_at(place), workspace);
   }
   return step_refinement(workspace);
 }
 
 void EnergyBranches::step_known(const DeviceDraws& draws, EnergySearch& search,
                                 GridWorkspace& workspace) noexcept {
-  const Accelerometer device = draws.device_at(place_at(point_));
+  const DeviceDraws::Place place = place_at(point_);
   if (branch_ < pool_.count()) {
-    if (refine_at(device, workspace)) {
+    if (refine_at(draws, place, workspace)) {
       pool_.know(branch_, point_, refiner_.result().energy);
       ++branch_;
     }
     return;
   }
-  set_device(device);
+  set_device(draws.device_at(place));
   if (search.start(model_, search_) != Status::kOk) {
     ++unsearched_;
     next_place();
@@ -281,7 +320,7 @@ void EnergyBranches::step_missing(const DeviceDraws& draws, GridWorkspace& works
     end_places();
     return;
   }
-  if (refine_at(draws.device_at(place_at(point_)), workspace)) {
+  if (refine_at(draws, place_at(point_), workspace)) {
     pool_.know(branch_, point_, refiner_.result().energy);
   }
 }
@@ -313,7 +352,7 @@ void EnergyBranches::begin_fit(std::size_t degree) noexcept {
 
 void EnergyBranches::step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
   const CubeNodes nodes(degree_, axes_);
-  if (!refine_at(draws.device_at(from_point(nodes.point(point_))), workspace)) {
+  if (!refine_at(draws, from_point(nodes.point(point_)), workspace)) {
     return;
   }
   energies_[branch_] = refiner_.result().energy;
@@ -340,7 +379,7 @@ void EnergyBranches::end_fit() noexcept {
 
 void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
   const CubePoint point = check_at(point_);
-  if (!refine_at(draws.device_at(from_point(point)), workspace)) {
+  if (!refine_at(draws, from_point(point), workspace)) {
     return;
   }
   energies_[branch_] = refiner_.result().energy;
@@ -368,15 +407,13 @@ void EnergyBranches::compare_branches() noexcept {
 }
 
 double EnergyBranches::accepted_error(std::size_t branch) const noexcept {
-  const double of_energy = kAcceptedError * abs(origin_);
-  if (!is_normal_) {
-    return of_energy;
-  }
+  // A unit of a place has the variance 1, or that of a uniform number within +-1.
+  const double unit = is_normal_ ? inverse_reach_ : kInverseRoot3;
   double variance = 0.0;
   for (const double slope : cube_slopes(degree_, coefficients(branch))) {
-    variance += slope * inverse_reach_ * (slope * inverse_reach_);
+    variance += slope * unit * (slope * unit);
   }
-  return std::max(of_energy, kAcceptedDeviation * sqrt(variance));
+  return std::max(kAcceptedError * abs(origin_), kAcceptedDeviation * sqrt(variance));
 }
 
 void EnergyBranches::end_checks() noexcept {
@@ -468,20 +505,19 @@ std::size_t EnergyBranches::first_pending() const noexcept {
   return static_cast<std::size_t>(__builtin_ctz(pending_));
 }
 
-void EnergyBranches::begin_refinement(const Accelerometer& device,
+void EnergyBranches::begin_refinement(const DeviceDraws& draws, const Accelerometer& device,
                                       GridWorkspace& workspace) noexcept {
-  set_device(device);
-  start_refinement(first_pending(), workspace);
+  start_refinement(draws, first_pending(), device, workspace);
 }
 
-void EnergyBranches::step(GridWorkspace& workspace) noexcept {
+void EnergyBranches::step(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
   if (done() || !step_refinement(workspace)) {
     return;
   }
   energy_ = std::max(energy_, refiner_.result().energy);
   pending_ &= pending_ - 1U;
   if (!done()) {
-    start_refinement(first_pending(), workspace);
+    start_refinement(draws, first_pending(), target_, workspace);
   }
 }
 

@@ -92,7 +92,7 @@ double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& works
   done_ = branches_.done();
   energy_ = branches_.energy();
   if (!done_) {
-    branches_.begin_refinement(device, workspace);
+    branches_.begin_refinement(draws_, device, workspace);
   }
   return run(workspace);
 }
@@ -124,7 +124,8 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
   done_ = branches_.done();
   energy_ = branches_.energy();
   if (!done_) {
-    branches_.begin_refinement(draws_.device(), workspace);  // Seldom, and only then needed.
+    branches_.begin_refinement(draws_, draws_.device(),
+                               workspace);  // Seldom, and only then needed.
   }
 }
 
@@ -140,7 +141,7 @@ void EnergyTrials::begin_fixed_point(const Accelerometer& device,
 
 void EnergyTrials::step(GridWorkspace& workspace) noexcept {
   if (!is_paper()) {
-    branches_.step(workspace);
+    branches_.step(draws_, workspace);
     energy_ = branches_.energy();
     done_ = branches_.done();
     return;

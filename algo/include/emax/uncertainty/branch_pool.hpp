@@ -29,8 +29,11 @@ class BranchPool {
   std::size_t count() const noexcept { return count_; }
   std::size_t switches(std::size_t branch) const noexcept { return branches_[branch].count; }
 
-  /// Adds a signal whose energies are not known yet; there must be room.
-  void add(const SwitchingSignal& signal) noexcept;
+  /// The place that a branch has been found at: its signal is refined there.
+  std::size_t home(std::size_t branch) const noexcept { return branches_[branch].home; }
+
+  /// Adds a signal that is refined at a place; there must be room.
+  void add(std::size_t place, const SwitchingSignal& signal) noexcept;
   /// Sets a signal to a branch, with the duration that it is given.
   ///
   /// @param scratch kMaxSwitches doubles.
@@ -66,6 +69,7 @@ class BranchPool {
     std::uint16_t parts[kMaxSwitches];  // Of T.
     std::uint16_t count;
     std::uint16_t known;  // A bit for each place.
+    std::uint16_t home;
   };
   struct Distance {
     double least = 0.0;  // Below the best, at the place where it is nearest.

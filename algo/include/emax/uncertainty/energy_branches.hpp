@@ -36,8 +36,8 @@ struct BranchNotes {
 /// may be the largest is refined at Chebyshev nodes of the ranges, for the normal distribution up
 /// to 4 standard deviations along each axis, and becomes a polynomial of degree 4, or else 5 or 6.
 /// It is held against refinements at the corners and at 30 places inside: to 1e-10 of the energy,
-/// for the normal distribution to 1e-6 of the standard deviation if that is more. A branch whose
-/// polynomial fails is refined wherever it may be the largest, and so are all outside the nodes.
+/// or to 1e-6 of its standard deviation if that is more. A branch whose polynomial fails is refined
+/// wherever it may be the largest, and so are all of them outside the nodes.
 ///
 /// Nothing here knows the criterion: it is the model's. Several figures can share `DeviceDraws`.
 ///
@@ -76,9 +76,10 @@ class EnergyBranches {
   /// Begins with a device whose place is not known: all branches must be refined.
   void begin() noexcept;
   /// Begins to refine what the polynomials have left open.
-  void begin_refinement(const Accelerometer& device, GridWorkspace& workspace) noexcept;
+  void begin_refinement(const DeviceDraws& draws, const Accelerometer& device,
+                        GridWorkspace& workspace) noexcept;
   /// A step of a refinement.
-  void step(GridWorkspace& workspace) noexcept;
+  void step(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
   bool done() const noexcept { return pending_ == 0; }
   /// @returns With `done()`, the largest energy over branches, for a = 1.
   double energy() const noexcept { return energy_; }
@@ -119,9 +120,13 @@ class EnergyBranches {
   DeviceDraws::Place from_point(const CubePoint& point) const noexcept;
   bool is_corner(std::size_t index) const noexcept;
   void next_place() noexcept;
-  void start_refinement(std::size_t branch, GridWorkspace& workspace) noexcept;
+  std::size_t legs_between(const Accelerometer& from, const Accelerometer& to) const noexcept;
+  void start_refinement(const DeviceDraws& draws, std::size_t branch, const Accelerometer& device,
+                        GridWorkspace& workspace) noexcept;
+  void begin_leg(GridWorkspace& workspace) noexcept;
   bool step_refinement(GridWorkspace& workspace) noexcept;
-  bool refine_at(const Accelerometer& device, GridWorkspace& workspace) noexcept;
+  bool refine_at(const DeviceDraws& draws, const DeviceDraws::Place& place,
+                 GridWorkspace& workspace) noexcept;
   void step_known(const DeviceDraws& draws, EnergySearch& search,
                   GridWorkspace& workspace) noexcept;
   void step_search(EnergySearch& search, GridWorkspace& workspace) noexcept;
@@ -158,6 +163,8 @@ class EnergyBranches {
   Refiner refiner_ = {};
   SearchSettings search_ = {};
   Accelerometer estimate_ = {};
+  Accelerometer home_ = {};  // A refinement goes from here to the target.
+  Accelerometer target_ = {};
   double origin_ = 0.0;  // Polynomials are fitted to differences from this.
   double tolerance_ = 0.0;
   double reach_ = 0.0;  // Polynomials hold up to this unit of a place along each axis.
@@ -168,6 +175,8 @@ class EnergyBranches {
   std::size_t terms_ = 0;
   std::size_t point_ = 0;  // The place, node or check that is worked on.
   std::size_t branch_ = 0;
+  std::size_t leg_ = 0;
+  std::size_t legs_ = 0;
   std::size_t unsearched_ = 0;
   std::uint32_t pending_ = 0;  // Branches to be refined, a bit each.
   std::array<bool, 3> axes_ = {};
