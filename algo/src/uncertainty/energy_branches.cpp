@@ -123,10 +123,12 @@ double EnergyBranches::progress() const noexcept {
 
 BranchNotes EnergyBranches::notes() const noexcept {
   BranchNotes notes;
-  notes.branches = pool_.count();
-  notes.degree = degree_;
+  notes.branches = static_cast<std::uint8_t>(pool_.count());
+  notes.degree = static_cast<std::uint8_t>(degree_);
   for (std::size_t b = 0; b < pool_.count() && degree_ != 0; ++b) {
-    notes.predicted += fits_[b].has_failed ? 0U : 1U;
+    if (!fits_[b].has_failed) {
+      ++notes.predicted;
+    }
   }
   notes.unsearched = unsearched_;
   notes.is_crowded = pool_.is_crowded();
@@ -290,7 +292,9 @@ void EnergyBranches::step_search(EnergySearch& search, GridWorkspace& workspace)
   if (search.has_refined()) {
     pool_.offer(point_, workspace.signal(), search.refined_energy());
   }
-  unsearched_ += status != Status::kOk ? 1U : 0U;
+  if (status != Status::kOk) {
+    ++unsearched_;
+  }
   if (status != Status::kOk || search.done()) {
     next_place();
   }

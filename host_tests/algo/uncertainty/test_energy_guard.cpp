@@ -68,13 +68,14 @@ TEST(EnergyGuard, AgreesWithTrialsOfTheBestSignal) {
 }
 
 TEST(EnergyGuard, NoticesTrialsThatFollowAPoorerSignal) {
-  // A signal without switches has nothing to refine: 0.0011 where 0.0051 is possible.
+  // A signal without switches has nothing to refine: 0.0011 where 0.0051 is possible. Trials that
+  // are not prepared know no other.
   const ModalModel model = paper_model();
   const TrialSettings settings = settings_for(2e-3);
   best = {};
   best.cells = grid_cells(model, 2e-3);
   ASSERT_EQ(best.signal.set({}, 2e-3), Status::kOk);
-  ASSERT_EQ(start(model, settings), Status::kOk);
+  ASSERT_EQ(trials.start(model, best, settings), Status::kOk);
   run_guard(1000, 0);
   EXPECT_EQ(guard.disagreements(), EnergyGuard::kSearches);
   EXPECT_GT(guard.largest_excess(), 3.0);
@@ -101,7 +102,7 @@ TEST(EnergyGuard, CountsASearchThatFailsAsADisagreement) {
   best.cells = grid_cells(model, 50e-3);
   const double times_s[] = {1e-3};
   ASSERT_EQ(best.signal.set(times_s, 50e-3), Status::kOk);
-  ASSERT_EQ(start(model, settings), Status::kOk);
+  ASSERT_EQ(trials.start(model, best, settings), Status::kOk);
   guard.start(1000, 0);
   Status status = Status::kOk;
   while (status == Status::kOk && !guard.done()) {

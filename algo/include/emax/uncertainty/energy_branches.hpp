@@ -19,11 +19,11 @@ namespace emax {
 
 /// What was found out about the signals that may be the worst within the ranges of the parameters.
 struct BranchNotes {
-  std::size_t branches = 0;    ///< Kept.
-  std::size_t predicted = 0;   ///< Of them with a polynomial that passed its check.
-  std::size_t degree = 0;      ///< Of the polynomials; 0 if there are none.
-  std::size_t unsearched = 0;  ///< Corners where the search failed: too many cells or switches.
-  bool is_crowded = false;     ///< A signal that might matter found no room.
+  std::uint8_t branches = 0;    ///< Kept.
+  std::uint8_t predicted = 0;   ///< Of them with a polynomial that passed its check.
+  std::uint8_t degree = 0;      ///< Of the polynomials; 0 if there are none.
+  std::uint8_t unsearched = 0;  ///< Places where the search failed: too many cells or switches.
+  bool is_crowded = false;      ///< A signal that might matter found no room.
 };
 
 /// The largest energy E*(S, f0, beta) of a figure within the ranges of its parameters.
@@ -104,7 +104,7 @@ class EnergyBranches {
   static constexpr std::size_t kPlaces = BranchPool::kPlaces;
   static constexpr std::size_t kCorners = kPlaces - 1;
   static constexpr std::size_t kChecks = kCorners + 30;
-  static constexpr std::size_t kCoefficients = kBranches * cube_terms(5);
+  static constexpr std::size_t kCoefficients = 420;  // 8 of degree 4, 7 of 5, 5 of 6.
 
   /// What is known of a branch's polynomial.
   struct Fit {
@@ -177,7 +177,7 @@ class EnergyBranches {
   std::size_t branch_ = 0;
   std::size_t leg_ = 0;
   std::size_t legs_ = 0;
-  std::size_t unsearched_ = 0;
+  std::uint8_t unsearched_ = 0;
   std::uint32_t pending_ = 0;  // Branches to be refined, a bit each.
   std::array<bool, 3> axes_ = {};
   bool gain_follows_ = false;
