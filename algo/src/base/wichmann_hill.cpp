@@ -1,6 +1,7 @@
 // The uniform generators of Wichmann and Hill, 2006 and 1982, with jump-ahead.
 #include "emax/base/wichmann_hill.hpp"
 
+#include "emax/base/double_unit.hpp"
 #include "emax/base/share_of_modulus.hpp"
 
 namespace emax {

@@ -1,6 +1,7 @@
 // Interpolation at Chebyshev nodes of a cube, and Horner's scheme for what comes of it.
 #include "emax/uncertainty/cube_polynomial.hpp"
 
+#include "emax/base/double_unit.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
 
@@ -90,25 +91,64 @@ void to_powers(std::size_t degree, Span<double> coefficients) noexcept {
   });
 }
 
-double cube_value(std::size_t degree, Span<const double> coefficients,
-                  const CubePoint& point) noexcept {
-  const double* next = coefficients.data();
-  const double x = point[0];
-  const double y = point[1];
-  const double z = point[2];
+namespace {
+
+double nested(std::size_t degree, const double* next, const CubePoint& point) noexcept {
   double sum = 0.0;
   for (std::size_t rest = 0; rest <= degree; ++rest) {
     double plane = 0.0;
     for (std::size_t left = 0; left <= rest; ++left) {
       double line = *next++;
       for (std::size_t k = 0; k < left; ++k) {
-        line = line * z + *next++;
+        line = line * point[2] + *next++;
       }
-      plane = left == 0 ? line : plane * y + line;
+      plane = left == 0 ? line : plane * point[1] + line;
     }
-    sum = rest == 0 ? plane : sum * x + plane;
+    sum = rest == 0 ? plane : sum * point[0] + plane;
   }
   return sum;
+}
+
+// The same written out by the compiler, where it is the loops that cost.
+
+template <std::size_t kLast>
+[[gnu::always_inline]] inline double line(const double* c, double z) noexcept {
+  if constexpr (kLast == 0) {
+    return c[0];
+  } else {
+    return line<kLast - 1>(c, z) * z + c[kLast];
+  }
+}
+
+template <std::size_t kLast>
+[[gnu::always_inline]] inline double plane(const double* c, double y, double z) noexcept {
+  constexpr std::size_t kOffset = kLast * (kLast + 1) / 2;
+  if constexpr (kLast == 0) {
+    return c[0];
+  } else {
+    return plane<kLast - 1>(c, y, z) * y + line<kLast>(c + kOffset, z);
+  }
+}
+
+template <std::size_t kLast>
+[[gnu::always_inline]] inline double written_out(const double* c, const CubePoint& point) noexcept {
+  constexpr std::size_t kOffset = kLast * (kLast + 1) * (kLast + 2) / 6;
+  if constexpr (kLast == 0) {
+    return c[0];
+  } else {
+    return written_out<kLast - 1>(c, point) * point[0] +
+           plane<kLast>(c + kOffset, point[1], point[2]);
+  }
+}
+
+}  // namespace
+
+double cube_value(std::size_t degree, Span<const double> coefficients,
+                  const CubePoint& point) noexcept {
+  if (kHasDoubleUnit && degree == 4) {
+    return written_out<4>(coefficients.data(), point);
+  }
+  return nested(degree, coefficients.data(), point);
 }
 
 CubePoint cube_slopes(std::size_t degree, Span<const double> coefficients) noexcept {

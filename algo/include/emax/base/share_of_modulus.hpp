@@ -8,24 +8,6 @@ namespace emax {
 /// The moduli are just below this power of two.
 inline constexpr unsigned kModulusBits = 31;
 
-/// True where the core divides doubles in hardware. The answer is the compiler's; it changes the
-/// cost of a draw and none of its bits.
-#if defined(__arm__)
-#if defined(__ARM_FP) && (__ARM_FP & 8) != 0
-inline constexpr bool kHasDoubleUnit = true;
-#else
-inline constexpr bool kHasDoubleUnit = false;
-#endif
-#elif defined(__riscv)
-#if defined(__riscv_flen) && __riscv_flen >= 64
-inline constexpr bool kHasDoubleUnit = true;
-#else
-inline constexpr bool kHasDoubleUnit = false;
-#endif
-#else
-inline constexpr bool kHasDoubleUnit = true;
-#endif
-
 /// @returns floor(2^94/m), what `share_by_multiplication()` takes in place of the division; m is
 /// above 2^30 and below 2^31. The compiler computes it.
 constexpr std::uint64_t reciprocal_of_modulus(std::uint32_t modulus) noexcept {
