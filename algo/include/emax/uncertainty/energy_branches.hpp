@@ -183,7 +183,6 @@ class EnergyBranches {
   bool gain_follows_ = false;
   bool is_normal_ = false;
   bool is_refining_ = false;
-  bool has_energy_ = false;
   Phase phase_ = Phase::kReady;
 };
 
