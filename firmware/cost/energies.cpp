@@ -62,13 +62,13 @@ Status count_energies(std::uint32_t duration_ms, Rows& rows) noexcept {
   }
   Ticks prepare_ticks = 0;
   while (status == Status::kOk && !energies.trials.ready()) {
-    prepare_ticks += ticks_of([&] { energies.trials.prepare(best, energies.grid); });
+    prepare_ticks += ticks_of([&] { energies.trials.prepare(energies.search, energies.grid); });
   }
   rows.add("prepare", duration_ms, instructions_of(prepare_ticks));
   Ticks trial_ticks = 0;
   volatile double energy = 0.0;
   for (std::uint32_t trial = 0; trial < kTrials && status == Status::kOk; ++trial) {
-    trial_ticks += ticks_of([&] { energy = energies.trials.energy(trial, best, energies.grid); });
+    trial_ticks += ticks_of([&] { energy = energies.trials.energy(trial, energies.grid); });
   }
   rows.add("trial", duration_ms, instructions_of((trial_ticks + kTrials / 2) / kTrials));
   return status;

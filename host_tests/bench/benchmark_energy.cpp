@@ -128,11 +128,11 @@ void one_trial(benchmark::State& state, Method method) {
   const MaximumEnergy best = maximum(settings.search);
   (void)trials.start(paper_model(), best, settings);
   while (!trials.ready()) {
-    trials.prepare(best, workspace);
+    trials.prepare(search, workspace);
   }
   std::uint32_t trial = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(trials.energy(trial++, best, workspace));
+    benchmark::DoNotOptimize(trials.energy(trial++, workspace));
   }
   state.counters["trials/s"] =
       benchmark::Counter(static_cast<double>(trial), benchmark::Counter::kIsRate);

@@ -1,6 +1,9 @@
 // The uniform generators of Wichmann and Hill, 2006 and 1982, with jump-ahead.
 #include "emax/base/wichmann_hill.hpp"
 
+#include "emax/base/double_unit.hpp"
+#include "emax/base/share_of_modulus.hpp"
+
 namespace emax {
 namespace {
 
@@ -9,17 +12,20 @@ constexpr std::uint32_t kModuli2006[4] = {2147483579, 2147483543, 2147483423, 21
 constexpr std::uint32_t kMultipliers1982[3] = {171, 172, 170};
 constexpr std::uint32_t kModuli1982[3] = {30269, 30307, 30323};
 
-constexpr unsigned kFoldBits = 31;
-constexpr std::uint32_t kFoldMask = (std::uint32_t{1} << kFoldBits) - 1;
+constexpr std::uint64_t kReciprocals2006[4] = {
+    reciprocal_of_modulus(kModuli2006[0]), reciprocal_of_modulus(kModuli2006[1]),
+    reciprocal_of_modulus(kModuli2006[2]), reciprocal_of_modulus(kModuli2006[3])};
+
+constexpr std::uint32_t kFoldMask = (std::uint32_t{1} << kModulusBits) - 1;
 
 // a i mod m without a 64-bit division, which small cores do in software: m = 2^31 - c, so 2^31 is c
 // modulo m. With a < 2^16 and c <= 525 one fold leaves less than 2m, and fits into 32 bits.
 std::uint32_t multiply_2006(std::uint32_t value, std::size_t j) noexcept {
   const std::uint32_t modulus = kModuli2006[j];
-  const std::uint32_t complement = (std::uint32_t{1} << kFoldBits) - modulus;
+  const std::uint32_t complement = (std::uint32_t{1} << kModulusBits) - modulus;
   const std::uint64_t product = std::uint64_t{kMultipliers2006[j]} * value;
   const std::uint32_t folded = (static_cast<std::uint32_t>(product) & kFoldMask) +
-                               complement * static_cast<std::uint32_t>(product >> kFoldBits);
+                               complement * static_cast<std::uint32_t>(product >> kModulusBits);
   return folded >= modulus ? folded - modulus : folded;
 }
 
@@ -35,6 +41,13 @@ std::uint32_t power_times(std::uint32_t multiplier, std::uint64_t exponent, std:
     exponent >>= 1U;
   }
   return static_cast<std::uint32_t>(result);
+}
+
+double share_2006(std::uint32_t value, std::size_t j) noexcept {
+  if (kHasDoubleUnit || value == 0) {  // Zero only before a seed.
+    return share_by_division(value, kModuli2006[j]);
+  }
+  return share_by_multiplication(value, kModuli2006[j], kReciprocals2006[j]);
 }
 
 // The fraction of a sum that is below 4 and not negative.
@@ -79,7 +92,7 @@ double WichmannHill::next() noexcept {
   }
   for (std::size_t j = 0; j < 4; ++j) {
     state_[j] = multiply_2006(state_[j], j);
-    sum += static_cast<double>(state_[j]) / static_cast<double>(kModuli2006[j]);
+    sum += share_2006(state_[j], j);
   }
   return fraction(sum);
 }

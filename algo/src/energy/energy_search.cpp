@@ -213,10 +213,12 @@ double EnergySearch::progress() const noexcept {
 
 Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
                           Span<double> trace) noexcept {
+  has_refined_ = false;
+  has_refined_ = false;
   if (done()) {
     return Status::kOk;
   }
-  for (std::size_t work = 0; work < kWorkPerStep && !done();) {
+  for (std::size_t work = 0; work < kWorkPerStep && !done() && !has_refined_;) {
     if (needs_operator()) {
       PhiOperator phi;
       (void)phi.set(model, settings_.duration_s,
@@ -557,6 +559,7 @@ void EnergySearch::end_climb(const ModalModel& model, GridWorkspace& workspace) 
 }
 
 void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
+  has_refined_ = true;
   const double before = result_.energy;
   take(refined, refiner_.result().energy);
   // The grid has nothing more to offer.

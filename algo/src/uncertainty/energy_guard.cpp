@@ -31,8 +31,10 @@ Status EnergyGuard::end_search(Status status) noexcept {
   return status;
 }
 
-Status EnergyGuard::begin_search(const EnergyTrials& trials, EnergySearch& search) noexcept {
-  trial_energy_ = trials.energy() / trials.scale();
+Status EnergyGuard::begin_search(EnergyTrials& trials, EnergySearch& search) noexcept {
+  const Accelerometer device = trials.device(trial_number());
+  trial_energy_ = trials.energy() / trials.scale_of(device);
+  trials.set_model(device);
   const Status status = search.start(trials.model(), trials.search_settings());
   if (status != Status::kOk) {
     return end_search(status);
@@ -41,14 +43,14 @@ Status EnergyGuard::begin_search(const EnergyTrials& trials, EnergySearch& searc
   return status;
 }
 
-Status EnergyGuard::step(EnergyTrials& trials, const MaximumEnergy& best, EnergySearch& search,
+Status EnergyGuard::step(EnergyTrials& trials, EnergySearch& search,
                          GridWorkspace& workspace) noexcept {
   if (done()) {
     return Status::kOk;
   }
   if (phase_ != Phase::kSearch) {
     if (phase_ == Phase::kNext) {
-      trials.begin(trials.device(trial_number()), best, workspace);
+      trials.begin(trial_number(), workspace);
       phase_ = Phase::kTrial;
     } else {
       trials.step(workspace);
@@ -64,7 +66,8 @@ Status EnergyGuard::step(EnergyTrials& trials, const MaximumEnergy& best, Energy
   }
   const double excess = (search.result().energy - trial_energy_) / abs(trial_energy_);
   largest_excess_ = excess > largest_excess_ ? excess : largest_excess_;
-  disagreements_ += excess > kTolerance ? 1 : 0;
+  const double tolerance = 2.0 * trials.tolerance();
+  disagreements_ += excess > (tolerance > kTolerance ? tolerance : kTolerance) ? 1 : 0;
   return end_search(status);
 }
 

@@ -46,7 +46,7 @@ Status start(const TrialSettings& settings, const ModalModel& model) {
   best = search.result();
   status = trials.start(model, best, settings);
   while (status == Status::kOk && !trials.ready()) {
-    trials.prepare(best, workspace);
+    trials.prepare(search, workspace);
   }
   return status;
 }
@@ -79,12 +79,12 @@ TEST(EnergyTrials, DoNotDependOnTheirOrder) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   std::vector<double> forward;
   for (std::uint32_t t = 0; t < 50; ++t) {
-    forward.push_back(trials.energy(t, best, workspace));
+    forward.push_back(trials.energy(t, workspace));
   }
   for (std::uint32_t t = 50; t-- > 0;) {
-    EXPECT_EQ(trials.energy(t, best, workspace), forward[t]);
+    EXPECT_EQ(trials.energy(t, workspace), forward[t]);
   }
-  EXPECT_EQ(trials.energy(17, best, workspace), forward[17]);
+  EXPECT_EQ(trials.energy(17, workspace), forward[17]);
 }
 
 TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
@@ -94,7 +94,7 @@ TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
     for (std::uint32_t t = 0; t < 12; ++t) {
       const Accelerometer device = trials.device(t);
       const double expected = full_search(device, settings);
-      EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
+      EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
     }
   }
 }
@@ -118,8 +118,9 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
     settings.box = c.box;
     settings.gain_follows = follows;
     ASSERT_EQ(start(settings, model), Status::kOk);
-    const SwitchingSignal best_signal = search.result().signal;
+    const SwitchingSignal best_signal = best.signal;
     EXPECT_TRUE(trials.predicts());
+    EXPECT_EQ(trials.notes().branches, 1u);  // So the best signal is the best all over the box.
     for (std::uint32_t t = 0; t < 1000; ++t) {
       const Accelerometer device = trials.device(t);
       ModalModel moved = model;
@@ -129,12 +130,10 @@ TEST_P(TrialsOf, AreWhatRefinementToTheEndFinds) {
       }
       SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
-      // 1e-9 is promised, 1e-10 is seen to at the corners, and inside them it is better.
-      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-10 * std::fabs(expected)) << t;
-      // And it is the energy of the signal that has been predicted.
-      const double of_signal = trials.scale() * energy(trials.model(), workspace.signal());
-      ASSERT_NEAR(trials.energy(), of_signal,
-                  test::rounding_of(moved) + 1e-15 * std::fabs(expected))
+      // What the polynomial was accepted with, at 38 places; some other place may be a little
+      // worse.
+      ASSERT_NEAR(trials.energy(t, workspace), expected,
+                  2.0 * trials.tolerance() * std::fabs(expected))
           << t;
     }
   }
@@ -163,18 +162,76 @@ INSTANTIATE_TEST_SUITE_P(Sensors, TrialsOf,
                                                 2.5e-3,
                                                 Criterion::kIntegralSquareError}));
 
-TEST(EnergyTrials, WhereNoQuadraticHoldsEachTrialIsARefinement) {
+// Two to four signals are the best somewhere in this box, with f0 within +-80 Hz and damping within
+// +-0.016.
+TrialSettings wide_settings() {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
-  settings.box = {0.2, 800.0, 0.1};
+  settings.box = {0.003, 80.0, 0.016};
+  return settings;
+}
+
+TEST(EnergyTrials, TakeTheLargestOfSeveralSignals) {
+  const TrialSettings settings = wide_settings();
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+  EXPECT_GT(trials.notes().branches, 1u);
+  EXPECT_FALSE(trials.notes().is_crowded);
+  EXPECT_EQ(trials.notes().unsearched, 0u);
+  // A search at this corner, found outside this code, reaches 5.29736e-3; the estimate's signal
+  // 5.15e-3.
+  const double corner = kPaperA2 * trials.energy_of({1.040, 4153.0, 0.3022}, workspace);
+  EXPECT_GE(corner, 5.297355e-3);
+  EXPECT_LT(corner, 5.2974e-3);
+  for (std::uint32_t t = 0; t < 12; ++t) {
+    const double expected = full_search(trials.device(t), settings);
+    // A trial may find more than a search; what it may be off by is its tolerance.
+    EXPECT_GE(trials.energy(t, workspace), (1.0 - 2.0 * trials.tolerance()) * expected) << t;
+  }
+}
+
+TEST(EnergyTrials, WhereAPolynomialFailsTheTrialIsARefinement) {
+  // The energy of a lightly damped sensor far from its estimate is no polynomial of degree 6: other
+  // signals become the best on the way.
+  ModalModel model{};
+  ASSERT_EQ(model.set({1.0, 900.0, 0.05}, {1, 200.0, 1.0}, Criterion::kIntegralSquareError),
+            Status::kOk);
+  TrialSettings settings = settings_for(Method::kBest, 8e-3);
+  settings.box = {0.01, 9.0, 5e-4};
+  ASSERT_EQ(start(settings, model), Status::kOk);
   EXPECT_FALSE(trials.predicts());
   for (std::uint32_t t = 0; t < 20; ++t) {
-    ModalModel moved = paper_model();
-    ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
-    SwitchingSignal signal = search.result().signal;
-    const double expected = refine(moved, signal, workspace.refinement()).energy;
-    EXPECT_EQ(trials.energy(t, best, workspace), expected) << t;
+    ASSERT_EQ(model.set_device(trials.device(t)), Status::kOk);
+    SwitchingSignal signal = best.signal;
+    const double expected = refine(model, signal, workspace.refinement()).energy;
+    // At least what the estimate's signal is refined to, to rounding.
+    EXPECT_GE(trials.energy(t, workspace), (1.0 - 1e-12) * expected) << t;
   }
+}
+
+TEST(EnergyTrials, BeforeTheyAreReadyTheyRefineTheEstimatesSignal) {
+  const TrialSettings settings = wide_settings();
+  ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+  ASSERT_EQ(trials.start(paper_model(), best, settings), Status::kOk);
+  EXPECT_FALSE(trials.ready());
+  EXPECT_EQ(trials.progress(), 0.0);
+  const Accelerometer corner = {1.040, 4153.0, 0.3022};  // A search there finds 2.8 % more.
+  ModalModel moved = paper_model();
+  ASSERT_EQ(moved.set_device(corner), Status::kOk);
+  SwitchingSignal signal = best.signal;
+  const double expected = refine(moved, signal, workspace.refinement()).energy;
+  // The refinement begins at switches of 16 bits: rounding of two ways to the same maximum.
+  EXPECT_NEAR(trials.energy_of(corner, workspace), expected, 1e-12 * expected);
+}
+
+TEST(EnergyTrials, ProgressOfThePreparationRisesToOne) {
+  ASSERT_EQ(start(wide_settings(), paper_model()), Status::kOk);
+  ASSERT_EQ(trials.start(paper_model(), best, settings_for(Method::kBest, 2e-3)), Status::kOk);
+  double progress = 0.0;
+  while (!trials.ready()) {
+    trials.prepare(search, workspace);
+    EXPECT_GE(trials.progress(), progress);
+    progress = trials.progress();
+  }
+  EXPECT_EQ(progress, 1.0);
 }
 
 constexpr double kPaperCovariance[3][3] = {
@@ -237,22 +294,22 @@ TEST(NormalTrials, TakeFourNumbersEachAndReplay) {
     const double z = std::sqrt(-2.0 * std::log(u[0])) * std::cos(2.0 * pi * u[1]);
     EXPECT_NEAR(trials.device(t).sensitivity, 1.037 + 3e-3 * z, 1e-14) << t;
   }
-  const double seventeen = trials.energy(17, best, workspace);
-  const double three = trials.energy(3, best, workspace);
-  EXPECT_EQ(trials.energy(17, best, workspace), seventeen);
-  EXPECT_EQ(trials.energy(3, best, workspace), three);
+  const double seventeen = trials.energy(17, workspace);
+  const double three = trials.energy(3, workspace);
+  EXPECT_EQ(trials.energy(17, workspace), seventeen);
+  EXPECT_EQ(trials.energy(3, workspace), three);
 }
 
 TEST(NormalTrials, AreWhatRefinementToTheEndFinds) {
   for (const double duration_s : {2e-3, 10e-3}) {
     ASSERT_EQ(start(normal_settings(duration_s), paper_model()), Status::kOk);
-    const SwitchingSignal best_signal = search.result().signal;
+    const SwitchingSignal best_signal = best.signal;
     for (std::uint32_t t = 0; t < 1000; ++t) {
       ModalModel moved = paper_model();
       ASSERT_EQ(moved.set_device(trials.device(t)), Status::kOk);
       SwitchingSignal signal = best_signal;
       const double expected = refine(moved, signal, workspace.refinement()).energy;
-      ASSERT_NEAR(trials.energy(t, best, workspace), expected, 1e-9 * expected) << t;
+      ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-9 * expected) << t;
     }
   }
 }
@@ -276,37 +333,62 @@ TEST(NormalTrials, TakeAParameterWithoutUncertaintyAndRefuseWhatIsNoCovariance) 
   TrialSettings bad = normal_settings(2e-3);
   bad.covariance[0][1] *= 1.1;
   EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kInvalidArgument);
-  // Damping 0.3182 less six times 0.0531 is below 0.
-  bad = normal_settings(2e-3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    bad.covariance[2][i] = bad.covariance[i][2] = i == 2 ? 0.0531 * 0.0531 : 0.0;
+}
+
+TEST(NormalTrials, OfADeviceNearTheEndOfWhatOneMayBeAreDrawnAgain) {
+  ModalModel model{};
+  ASSERT_EQ(model.set({1.0, 4000.0, 0.02}, {4, 1000.0, 1.0}, Criterion::kIntegralSquareError),
+            Status::kOk);
+  TrialSettings settings = settings_for(Method::kBest, 1e-3);
+  settings.distribution = Distribution::kNormal;
+  settings.covariance[0][0] = 1e-6;
+  settings.covariance[1][1] = 16.0;
+  settings.covariance[2][2] = 1e-4;  // 0.02 +- 0.01: one draw in 43 is no device.
+  ASSERT_EQ(start(settings, model), Status::kOk);
+  for (std::uint32_t t = 0; t < 300; ++t) {
+    EXPECT_GT(trials.energy(t, workspace), 0.0);
+    EXPECT_GE(trials.device(t).damping, kMinDamping);
   }
-  EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kInvalidArgument);
-  bad.covariance[2][2] = 0.05 * 0.05;
-  EXPECT_EQ(trials.start(paper_model(), best, bad), Status::kOk);
+  EXPECT_FALSE(trials.is_exhausted());
+  // 300/43 = 7 are expected.
+  EXPECT_GT(trials.redraws(), 0u);
+  EXPECT_LT(trials.redraws(), 20u);
+}
+
+TEST(NormalTrials, WithoutADeviceInAllRedrawsHaveNoEnergy) {
+  TrialSettings settings = normal_settings(2e-3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    settings.covariance[2][i] = settings.covariance[i][2] = i == 2 ? 1e12 : 0.0;
+  }
+  ASSERT_EQ(start(normal_settings(2e-3), paper_model()), Status::kOk);
+  ASSERT_EQ(trials.start(paper_model(), best, settings), Status::kOk);
+  EXPECT_FALSE(trials.is_exhausted());
+  trials.begin(0, workspace);
+  EXPECT_TRUE(trials.done());
+  EXPECT_TRUE(std::isnan(trials.energy()));
+  EXPECT_TRUE(trials.is_exhausted());
 }
 
 TEST(EnergyTrials, PaperMethodRunsTheWholeFixedPointInEachTrial) {
   const TrialSettings settings = settings_for(Method::kPaper, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, best, workspace), 0.00448654991209,
-              0.6e-14);
+  EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, workspace), 0.00448654991209, 0.6e-14);
   for (std::uint32_t t = 0; t < 5; ++t) {
     const Accelerometer device = trials.device(t);
     const double expected = full_search(device, settings);
-    EXPECT_NEAR(trials.energy(t, best, workspace), expected, 1e-12 * expected) << t;
+    EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
   }
 }
 
 TEST(EnergyTrials, LargestCornerOfTheBoxMeetsTheKnownNumber) {
   ASSERT_EQ(start(settings_for(Method::kBest, 2e-3), paper_model()), Status::kOk);
   // Eight digits are known.
-  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, best, workspace);
+  const double corner = kPaperA2 * trials.energy_of({1.040, 4067.0, 0.3178}, workspace);
   EXPECT_NEAR(corner, 0.0051346992, 0.5e-10);
   for (const double s : {1.034, 1.040}) {
     for (const double f0_hz : {4067.0, 4079.0}) {
       for (const double damping : {0.3178, 0.3186}) {
-        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, best, workspace), corner);
+        EXPECT_LE(kPaperA2 * trials.energy_of({s, f0_hz, damping}, workspace), corner);
       }
     }
   }
@@ -316,20 +398,21 @@ TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivit
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   settings.gain_follows = true;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double at_estimate = trials.energy_of(kPaperDevice, best, workspace);
-  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace);
+  const double at_estimate = trials.energy_of(kPaperDevice, workspace);
+  const double at_double = trials.energy_of({2.074, 4073.0, 0.3182}, workspace);
   EXPECT_NEAR(at_double, 4.0 * at_estimate, 1e-13 * at_double);
   settings.gain_follows = false;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  EXPECT_EQ(trials.energy_of(kPaperDevice, best, workspace), at_estimate);
+  // Another polynomial of the same energy.
+  EXPECT_NEAR(trials.energy_of(kPaperDevice, workspace), at_estimate, 1e-12 * at_estimate);
   // A filter that stays at 1.037 leaves a lasting error of 1.037 a.
-  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, best, workspace), at_double);
+  EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, workspace), at_double);
 }
 
 TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
-  const double before = trials.energy(3, best, workspace);
+  const double before = trials.energy(3, workspace);
   const auto refuse = [&](const ParameterBox& box) {
     settings.box = box;
     return trials.start(paper_model(), best, settings);
@@ -343,7 +426,7 @@ TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
             Status::kOk);
   settings.box = {0.003, 6.0, 0.2};
   EXPECT_EQ(trials.start(heavy, best, settings), Status::kOverdamped);
-  EXPECT_EQ(trials.energy(3, best, workspace), before);
+  EXPECT_EQ(trials.energy(3, workspace), before);
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ class WichmannHill {
   ///   changed.
   Status seed(Generator generator, Span<const std::uint32_t> seeds) noexcept;
 
-  /// @returns The next number, in [0, 1). One multiplication and one division per component.
+  /// @returns The next number, in [0, 1). One multiplication and one division per component; where
+  /// doubles are divided in software, three multiplications (`share_of_modulus`).
   double next() noexcept;
 
   /// Goes forward as `steps` calls of `next()` would, by a_j^steps mod m_j; at most 512 modular

@@ -172,6 +172,11 @@ class EnergySearch {
   /// @returns The best so far; with `done()`, the result.
   const MaximumEnergy& result() const noexcept { return result_; }
 
+  /// @returns Whether the last step has ended a refinement; the workspace's signal is then refined,
+  ///   and this is its energy. A step ends where a refinement does.
+  bool has_refined() const noexcept { return has_refined_; }
+  double refined_energy() const noexcept { return refiner_.result().energy; }
+
   /// The number of energies in the trace.
   std::size_t trace_count() const noexcept { return trace_count_; }
 
@@ -254,6 +259,7 @@ class EnergySearch {
   Phase phase_ = Phase::kStart;
   bool at_rest_ = false;
   bool has_result_ = false;
+  bool has_refined_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);

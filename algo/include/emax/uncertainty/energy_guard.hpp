@@ -11,12 +11,13 @@
 
 namespace emax {
 
-/// Repeats trials by a full search. A trial follows the signal that is best at the estimate; far
-/// from the estimate another one may be better, which only a search from new starts shows.
+/// Repeats trials by a full search. A trial knows the signals that are best at the estimate and at
+/// the corners of the ranges; another one may be better in between, which only a search from new
+/// starts shows.
 ///
 ///     guard.start(trial_count, trial_of_maximum);
 ///     while (!guard.done()) {
-///       guard.step(trials, best, search, workspace);
+///       guard.step(trials, search, workspace);
 ///     }
 ///
 /// Looked at are kSpread trials at equal distances and the one with the largest energy. For trials
@@ -25,7 +26,8 @@ class EnergyGuard {
  public:
   static constexpr std::uint32_t kSpread = 8;
   static constexpr std::uint32_t kSearches = kSpread + 1;
-  /// A search disagrees if its energy is above the trial's by more than this part of it.
+  /// A search disagrees if its energy is above the trial's by more than this part of it, and more
+  /// than twice the trials' own tolerance.
   static constexpr double kTolerance = 1e-9;
 
   /// Starts over.
@@ -37,15 +39,13 @@ class EnergyGuard {
   /// Does one step of one trial or of its search.
   ///
   /// @param trials    The trials, ready; their order does not matter to their results.
-  /// @param[in] best  As for the trials.
   /// @param search    Used until `done()`.
   /// @param workspace As for the search.
   /// @returns
   /// * kOk: `done()` tells whether it was the last step.
   /// * kTooManySwitches, kTooManyCells: As `EnergySearch`, whose search has failed. It counts as a
   ///   disagreement, and the next step goes on with the next trial.
-  Status step(EnergyTrials& trials, const MaximumEnergy& best, EnergySearch& search,
-              GridWorkspace& workspace) noexcept;
+  Status step(EnergyTrials& trials, EnergySearch& search, GridWorkspace& workspace) noexcept;
 
   bool done() const noexcept { return made_ == wanted_; }
   /// @returns From 0 to 1, in steps of whole searches.
@@ -61,7 +61,7 @@ class EnergyGuard {
 
   std::uint32_t trial_number() const noexcept;
   Status end_search(Status status) noexcept;
-  Status begin_search(const EnergyTrials& trials, EnergySearch& search) noexcept;
+  Status begin_search(EnergyTrials& trials, EnergySearch& search) noexcept;
 
   double trial_energy_ = 0.0;
   double largest_excess_ = 0.0;

@@ -25,8 +25,8 @@ constexpr char kBoxTooLarge[] =
     "The ranges of the parameters, estimate minus to plus standard uncertainty, leave what a "
     "device may be (S and f0 above 0, damping from 1e-4 to below 1); give smaller uncertainties.";
 constexpr char kNormalTooWide[] =
-    "Six standard deviations from the estimate leave what a device may be (S and f0 above 0, "
-    "damping from 1e-4 to below 1), or the covariance is none; give smaller uncertainties.";
+    "Draws of the parameters leave what a device may be (S and f0 above 0, damping from 1e-4 to "
+    "below 1) 65 times in a row, or the covariance is none; give smaller uncertainties.";
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
     "below 1, because fit and grid follow the resonance.";
@@ -68,11 +68,11 @@ Failure check_box(const EvaluationResults& results, const Settings& settings, Go
       return {Status::kInvalidArgument, Stage::kIdle, kWrongUncertainty};
     }
   }
+  // Normal draws that are no device are drawn again.
   const bool is_box = settings.distribution == Distribution::kBox;
-  const double widest =
-      results.trial_scale(settings) * (is_box ? 1.0 : EnergyTrials::kMaxDeviations);
+  const double widest = results.trial_scale(settings);
   for (const double side : {-widest, widest}) {
-    if (wants_trials(goal) && !is_side_valid(results.device, side)) {
+    if (wants_trials(goal) && is_box && !is_side_valid(results.device, side)) {
       return failure_of_width(Status::kInvalidArgument, settings.distribution);
     }
   }
@@ -148,8 +148,8 @@ Failure failure_of_width(Status status, Distribution distribution) noexcept {
           distribution == Distribution::kBox ? kBoxTooLarge : kNormalTooWide};
 }
 
-Failure failure_of_trials(Status status, Stage stage) noexcept {
-  return {status, stage, kTrialsFailed};
+Failure failure_of_trials(Status status, Stage stage, bool is_exhausted) noexcept {
+  return {status, stage, is_exhausted ? kNormalTooWide : kTrialsFailed};
 }
 
 Failure failure_of_search(Status status, Method method, Stage stage, double duration_s) noexcept {

@@ -34,7 +34,7 @@ Failure failure_of_fit(Status status) noexcept;
 Failure failure_of_width(Status status, Distribution distribution) noexcept;
 
 /// @returns Why the energies of the trials have no summary.
-Failure failure_of_trials(Status status, Stage stage) noexcept;
+Failure failure_of_trials(Status status, Stage stage, bool is_exhausted) noexcept;
 
 /// @returns Why a search has no result.
 Failure failure_of_search(Status status, Method method, Stage stage, double duration_s) noexcept;

@@ -76,6 +76,8 @@ double Evaluation::progress_of_stage() const noexcept {
       return work_.search_.progress();
     case Stage::kBound:
       return work_.part_.bound.bound.progress();
+    case Stage::kPrediction:
+      return work_.part_.trial.trials.progress();
     case Stage::kAdaptive:
       return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
@@ -92,7 +94,6 @@ double Evaluation::progress_of_stage() const noexcept {
     }
     case Stage::kIdle:
     case Stage::kModel:
-    case Stage::kPrediction:
     case Stage::kDone:
     case Stage::kFailed:
       return work_.progress_;
@@ -263,16 +264,16 @@ void Evaluation::begin_trials() noexcept {
     (void)fail(failure_of_width(status, settings.distribution));
     return;
   }
-  work_.grid_.share_with_store();
   results_.stage = Stage::kPrediction;
 }
 
 void Evaluation::step_prediction() noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   if (!part.trials.ready()) {
-    part.trials.prepare(results_.maximum, work_.grid_);
+    part.trials.prepare(work_.search_, work_.grid_);
     return;
   }
+  work_.grid_.share_with_store();
   if (!results_.settings.adaptive) {
     begin_monte_carlo(results_.settings.trials);
     return;
@@ -293,7 +294,7 @@ bool Evaluation::advance_trial(std::uint32_t trial) noexcept {
   if (work_.trial_runs_) {
     trials.step(work_.grid_);
   } else {
-    trials.begin(trials.device(trial), results_.maximum, work_.grid_);
+    trials.begin(trial, work_.grid_);
   }
   work_.trial_runs_ = !trials.done();
   return trials.done();
@@ -303,7 +304,7 @@ void Evaluation::run_slice() noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   MonteCarloStore& store = work_.grid_.store();
   const bool adapts = results_.stage == Stage::kAdaptive;
-  const std::size_t work_of_trial = part.trials.work(results_.maximum);
+  const std::size_t work_of_trial = part.trials.work();
   for (std::size_t work = 0; work < kWorkPerStep;) {
     if (adapts ? part.adaptive.done() : part.monte_carlo.done()) {
       return;
@@ -341,7 +342,8 @@ void Evaluation::step_adaptive() noexcept {
   }
   results_.adaptive = adaptive.result();
   if (results_.adaptive.status != Status::kOk) {
-    (void)fail(failure_of_trials(results_.adaptive.status, Stage::kAdaptive));
+    (void)fail(failure_of_trials(results_.adaptive.status, Stage::kAdaptive,
+                                 work_.part_.trial.trials.is_exhausted()));
     return;
   }
   begin_monte_carlo(results_.adaptive.trials);
@@ -366,9 +368,11 @@ void Evaluation::step_monte_carlo() noexcept {
     return;
   }
   results_.trials.take(part.monte_carlo, work_.grid_.store());
+  results_.trials.redraws = part.trials.redraws();
+  results_.trials.branches = part.trials.notes();
   const MonteCarloResult& result = results_.trials.result;
   if (result.status != Status::kOk) {
-    (void)fail(failure_of_trials(result.status, Stage::kMonteCarlo));
+    (void)fail(failure_of_trials(result.status, Stage::kMonteCarlo, part.trials.is_exhausted()));
     return;
   }
   results_.device_at_maximum = part.trials.device(result.trial_of_maximum);
@@ -384,8 +388,8 @@ void Evaluation::step_monte_carlo() noexcept {
 
 void Evaluation::step_guard() noexcept {
   EnergyGuard& guard = work_.guard_;
-  (void)guard.step(work_.part_.trial.trials, results_.maximum, work_.search_,
-                   work_.grid_);  // A search that fails counts as disagreement.
+  // A search that fails counts as disagreement.
+  (void)guard.step(work_.part_.trial.trials, work_.search_, work_.grid_);
   if (guard.done()) {
     results_.guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
     results_.has_monte_carlo = true;

@@ -543,9 +543,28 @@ void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
     out.general(kPercent * guard.largest_excess, 3)
         .text(
             " % more energy with another signal than\n"
-            "  the best one at the estimates. Maximum and intervals are too low; the parameters' "
-            "ranges\n"
-            "  are too wide for one signal, or two signals are nearly equal.\n");
+            "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "
+            "and\n"
+            "  intervals are too low; give smaller uncertainties.\n");
+  }
+}
+
+/// What the trials themselves have to say about their numbers.
+void write_trial_warnings(const TrialResults& trials, ReportWriter& out) noexcept {
+  if (trials.branches.is_crowded) {
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: more signals than the trials have room for may be the worst within the\n")
+        .text("  parameters' ranges. They take the best ")
+        .integer(trials.branches.branches)
+        .text("; give smaller uncertainties.\n");
+  }
+  constexpr std::uint32_t kOnePercent = 100;
+  if (trials.redraws > trials.result.trials / kOnePercent) {
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: ")
+        .integer(trials.redraws)
+        .text(" draws of the parameters were no device and were made again. E is not\n")
+        .text("  normal there; give smaller uncertainties.\n");
   }
 }
 
@@ -571,6 +590,7 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
   write_interval(out, "Symmetric interval", result.probability, result.symmetric);
   write_interval(out, "Shortest interval", result.probability, result.shortest);
   write_guard(results.guard, out);
+  write_trial_warnings(results.trials, out);
 }
 
 // Trend

@@ -37,7 +37,7 @@ class EvaluationWorkspace;
 ///
 /// A run is two references: what it has found is in the results, what it needs to go on in the
 /// workspace. A new one on the same two goes on where the last one was. Both together take less
-/// than 92 KiB. Results are those of the settings and the device alone: they depend neither on
+/// than 96 KiB. Results are those of the settings and the device alone: they depend neither on
 /// earlier evaluations nor on lent memory.
 class Evaluation {
  public:

@@ -15,6 +15,7 @@
 #include "emax/model/accelerometer.hpp"
 #include "emax/model/modal_model.hpp"
 #include "emax/model/response_scan.hpp"
+#include "emax/uncertainty/energy_branches.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 #include "emax/uncertainty/monte_carlo.hpp"
 #include "emax/uncertainty/trend.hpp"
@@ -41,6 +42,9 @@ inline constexpr std::size_t kHistogramRows = 64;
 /// What is kept of the trials: the results and a coarse histogram. Energies in V^2 s.
 struct TrialResults {
   MonteCarloResult result;
+  /// Normal draws that were no device and were made again; more than 1 % deserve a warning.
+  std::uint32_t redraws = 0;
+  BranchNotes branches;  ///< The signals that the trials took the largest energy of.
   std::uint32_t rows[kHistogramRows] = {};
 
   /// The number of values in equal bins from the smallest to the largest.

@@ -21,7 +21,7 @@
 namespace emax::app {
 
 /// The memory that an evaluation works in. Between `done()` and the next `start_...()` or
-/// `pursue()` it may hold anything else. 80 KiB, all zero before use.
+/// `pursue()` it may hold anything else. 85 KiB, all zero before use.
 class EvaluationWorkspace {
  public:
   /// @returns Progress of the stage that runs, from 0 to 1; of Stage::kAdaptive an estimate, which
@@ -71,6 +71,6 @@ class EvaluationWorkspace {
 
 static_assert(std::is_trivially_copyable_v<EvaluationWorkspace>);
 static_assert(!kHasDefaultCapacities ||
-              sizeof(EvaluationResults) + sizeof(EvaluationWorkspace) <= 92 * 1024);
+              sizeof(EvaluationResults) + sizeof(EvaluationWorkspace) <= 96 * 1024);
 
 }  // namespace emax::app

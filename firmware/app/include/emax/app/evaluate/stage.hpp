@@ -13,7 +13,7 @@ enum class Stage : std::uint8_t {
   kFitDraws,    ///< Covariance of the fit by Monte Carlo draws.
   kEnergy,      ///< The largest energy at the estimate.
   kBound,       ///< What no signal can exceed.
-  kPrediction,  ///< How the best signal changes over the ranges of the parameters.
+  kPrediction,  ///< Which signals may be the worst over the ranges, and how their energies change.
   kAdaptive,    ///< Number of trials by JCGM 101 7.9.
   kMonteCarlo,
   kGuard,  ///< Full searches for some of the trials.

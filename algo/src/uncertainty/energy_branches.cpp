@@ -1,0 +1,528 @@
+// Finds the signals that may be the worst within the ranges, and lays polynomials through them.
+#include "emax/uncertainty/energy_branches.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+
+namespace emax {
+namespace {
+
+/// What a polynomial may be off by, as part of the energy,
+constexpr double kAcceptedError = 1e-10;
+/// or if that is more, as part of the standard deviation of the energy over the draws.
+constexpr double kAcceptedDeviation = 1e-6;
+/// The farthest from the estimate that polynomials of the normal distribution hold, in standard
+/// deviations along each axis; and where its corners are.
+constexpr double kNormalReach = 4.0;
+constexpr double kInverseRoot3 = 0.57735026918962576;
+/// Where devices end nearer to the estimate than this, there is nothing to lay a polynomial on.
+constexpr double kLeastReach = 1.0;
+/// A degree more makes the error some 10 to 100 times smaller.
+constexpr double kMostHope = 1e4;
+/// The error elsewhere, as a multiple of the largest one found.
+constexpr double kDoubt = 8.0;
+/// Part of the change of the best energy, and of that energy: how far a branch may stay below the
+/// best at all nodes and still be the best between them.
+constexpr double kRoomBetweenNodes = 0.05;
+constexpr double kSame = 1e-9;
+/// On the way from one device to another a refinement is made wherever the resonance has moved by
+/// this angle, as far back as it is remembered. Longer legs can end on another signal.
+constexpr double kLeg_rad = 0.25;
+constexpr double kMostLegs = 32.0;
+constexpr double kMemory = 3.0;  // In time constants.
+
+/// Van der Corput's sequence: the digits of a number behind the point, in reverse.
+double radical_inverse(std::size_t number, std::size_t base) noexcept {
+  double result = 0.0;
+  double digit = 1.0;
+  for (; number > 0; number /= base) {
+    digit /= static_cast<double>(base);
+    result += digit * static_cast<double>(number % base);
+  }
+  return result;
+}
+
+}  // namespace
+
+void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& best,
+                           const DeviceDraws& draws, const SearchSettings& search,
+                           bool gain_follows) noexcept {
+  model_ = at_estimate;
+  search_ = search;
+  estimate_ = at_estimate.device();
+  gain_follows_ = gain_follows;
+  if (gain_follows) {
+    (void)model_.set_gain(estimate_.sensitivity);  // A device's sensitivity is a valid gain.
+  }
+  is_normal_ = draws.distribution() == Distribution::kNormal;
+  reach_ = draws.reach(is_normal_ ? kNormalReach : 1.0);
+  inverse_reach_ = 1.0 / reach_;
+  corner_ = is_normal_ ? kInverseRoot3 * reach_ : 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    axes_[a] = draws.moves(a, gain_follows);
+  }
+  pool_.clear();
+  pool_.add(0, best.signal);
+  degree_ = 0;
+  terms_ = 0;
+  tolerance_ = 0.0;
+  unsearched_ = 0;
+  pending_ = 0;
+  point_ = 0;
+  branch_ = 0;
+  is_refining_ = false;
+  phase_ = Phase::kKnown;
+}
+
+void EnergyBranches::prepare(const DeviceDraws& draws, EnergySearch& search,
+                             GridWorkspace& workspace) noexcept {
+  switch (phase_) {
+    case Phase::kKnown:
+      step_known(draws, search, workspace);
+      return;
+    case Phase::kSearch:
+      step_search(search, workspace);
+      return;
+    case Phase::kMissing:
+      step_missing(draws, workspace);
+      return;
+    case Phase::kNodes:
+      step_nodes(draws, workspace);
+      return;
+    case Phase::kChecks:
+      step_checks(draws, workspace);
+      return;
+    case Phase::kReady:
+      return;
+  }
+}
+
+double EnergyBranches::progress() const noexcept {
+  // Searches take most of the time, and checks are a quarter of the rest.
+  constexpr double kSearches = 0.6;
+  constexpr double kNodes = 0.9;
+  switch (phase_) {
+    case Phase::kKnown:
+    case Phase::kSearch:
+      return kSearches * static_cast<double>(point_) / static_cast<double>(kPlaces);
+    case Phase::kMissing:
+      return kSearches;
+    case Phase::kNodes:
+      return kSearches + (kNodes - kSearches) * static_cast<double>(point_) /
+                             static_cast<double>(CubeNodes(degree_, axes_).size());
+    case Phase::kChecks:
+      return kNodes + (1.0 - kNodes) * static_cast<double>(point_) / static_cast<double>(kChecks);
+    case Phase::kReady:
+      break;
+  }
+  return 1.0;
+}
+
+BranchNotes EnergyBranches::notes() const noexcept {
+  BranchNotes notes;
+  notes.branches = static_cast<std::uint8_t>(pool_.count());
+  notes.degree = static_cast<std::uint8_t>(degree_);
+  for (std::size_t b = 0; b < pool_.count() && degree_ != 0; ++b) {
+    if (!fits_[b].has_failed) {
+      ++notes.predicted;
+    }
+  }
+  notes.unsearched = unsearched_;
+  notes.is_crowded = pool_.is_crowded();
+  return notes;
+}
+
+std::size_t EnergyBranches::most_switches() const noexcept {
+  std::size_t most = 0;
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    most = std::max(most, pool_.switches(b));
+  }
+  return most;
+}
+
+void EnergyBranches::set_device(const Accelerometer& device) noexcept {
+  Accelerometer scaled = device;
+  if (gain_follows_) {
+    scaled.sensitivity = estimate_.sensitivity;
+  }
+  (void)model_.set_device(scaled);  // Draws and places within their reach are devices.
+}
+
+/// A corner on the axes that matter: bit a of the index is the side of axis a.
+DeviceDraws::Place EnergyBranches::corner(std::size_t index, double unit) const noexcept {
+  DeviceDraws::Place place = {};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes_[a]) {
+      place[a] = (index >> a & 1U) != 0 ? unit : -unit;
+    }
+  }
+  return place;
+}
+
+/// Whether a corner is another one than those before it.
+bool EnergyBranches::is_corner(std::size_t index) const noexcept {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!axes_[a] && (index >> a & 1U) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The estimate, then the corners.
+DeviceDraws::Place EnergyBranches::place_at(std::size_t index) const noexcept {
+  return index == 0 ? DeviceDraws::Place{} : corner(index - 1, corner_);
+}
+
+/// The corners, then Halton's sequence.
+CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
+  if (index < kCorners) {
+    return corner(index, corner_ * inverse_reach_);
+  }
+  constexpr std::size_t kBases[3] = {2, 3, 5};
+  CubePoint point = {};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes_[a]) {
+      point[a] = 2.0 * radical_inverse(index - kCorners + 1, kBases[a]) - 1.0;
+    }
+  }
+  return point;
+}
+
+DeviceDraws::Place EnergyBranches::from_point(const CubePoint& point) const noexcept {
+  return {reach_ * point[0], reach_ * point[1], reach_ * point[2]};
+}
+
+CubePoint EnergyBranches::to_point(const DeviceDraws::Place& place) const noexcept {
+  if (reach_ == 1.0) {
+    return place;
+  }
+  return {inverse_reach_ * place[0], inverse_reach_ * place[1], inverse_reach_ * place[2]};
+}
+
+bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noexcept {
+  constexpr double kRounding = 1e-9;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes_[a] && !(abs(place[a]) <= reach_ * (1.0 + kRounding))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t EnergyBranches::legs_between(const Accelerometer& from,
+                                         const Accelerometer& to) const noexcept {
+  const double w0 = kTwoPi * from.natural_frequency_hz;
+  const double memory_s = std::min(search_.duration_s, kMemory / (w0 * from.damping));
+  const double moved_rad =
+      kTwoPi * abs(to.natural_frequency_hz - from.natural_frequency_hz) * memory_s;
+  return 1U + static_cast<std::size_t>(std::min(moved_rad / kLeg_rad, kMostLegs));
+}
+
+/// Refines a branch for a device, coming from the one that it was found at.
+void EnergyBranches::start_refinement(const DeviceDraws& draws, std::size_t branch,
+                                      const Accelerometer& device,
+                                      GridWorkspace& workspace) noexcept {
+  pool_.load(branch, search_.duration_s, workspace.refinement(), workspace.signal());
+  target_ = device;
+  home_ = draws.device_at(place_at(pool_.home(branch)));
+  legs_ = legs_between(home_, device);
+  leg_ = 0;
+  begin_leg(workspace);
+  is_refining_ = true;
+}
+
+void EnergyBranches::begin_leg(GridWorkspace& workspace) noexcept {
+  ++leg_;
+  if (leg_ == legs_) {
+    set_device(target_);
+  } else {
+    const double part = static_cast<double>(leg_) / static_cast<double>(legs_);
+    const auto between = [part](double from, double to) { return from + part * (to - from); };
+    set_device({between(home_.sensitivity, target_.sensitivity),
+                between(home_.natural_frequency_hz, target_.natural_frequency_hz),
+                between(home_.damping, target_.damping)});
+  }
+  refiner_.start(workspace.signal());
+}
+
+/// @returns True with the last step.
+bool EnergyBranches::step_refinement(GridWorkspace& workspace) noexcept {
+  refiner_.step(model_, workspace.signal(), workspace.refinement());
+  if (refiner_.done() && leg_ < legs_) {
+    begin_leg(workspace);
+  }
+  is_refining_ = !refiner_.done();
+  return refiner_.done();
+}
+
+/// A step of the refinement of the next branch. @returns True if it is refined.
+bool EnergyBranches::refine_at(const DeviceDraws& draws, const DeviceDraws::Place& place,
+                               GridWorkspace& workspace) noexcept {
+  if (!is_refining_) {
+    start_refinement(draws, branch_, draws.device_at(place), workspace);
+  }
+  return step_refinement(workspace);
+}
+
+void EnergyBranches::step_known(const DeviceDraws& draws, EnergySearch& search,
+                                GridWorkspace& workspace) noexcept {
+  const DeviceDraws::Place place = place_at(point_);
+  if (branch_ < pool_.count()) {
+    if (refine_at(draws, place, workspace)) {
+      pool_.know(branch_, point_, refiner_.result().energy);
+      ++branch_;
+    }
+    return;
+  }
+  set_device(draws.device_at(place));
+  if (search.start(model_, search_) != Status::kOk) {
+    ++unsearched_;
+    next_place();
+    return;
+  }
+  phase_ = Phase::kSearch;
+}
+
+void EnergyBranches::step_search(EnergySearch& search, GridWorkspace& workspace) noexcept {
+  const Status status = search.step(model_, workspace);
+  if (search.has_refined()) {
+    pool_.offer(point_, workspace.signal(), search.refined_energy());
+  }
+  if (status != Status::kOk) {
+    ++unsearched_;
+  }
+  if (status != Status::kOk || search.done()) {
+    next_place();
+  }
+}
+
+void EnergyBranches::next_place() noexcept {
+  do {
+    ++point_;
+  } while (point_ < kPlaces && !is_corner(point_ - 1));
+  branch_ = 0;
+  phase_ = Phase::kKnown;
+  if (point_ == kPlaces) {
+    point_ = 0;
+    phase_ = Phase::kMissing;
+  }
+}
+
+/// Branches found at later places are refined at the earlier ones.
+void EnergyBranches::step_missing(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
+  while (point_ < kPlaces && (branch_ == pool_.count() || pool_.knows(branch_, point_) ||
+                              (point_ > 0 && !is_corner(point_ - 1)))) {
+    const bool is_last = branch_ == pool_.count();
+    point_ += is_last ? 1U : 0U;
+    branch_ = is_last ? 0 : branch_ + 1;
+  }
+  if (point_ == kPlaces) {
+    end_places();
+    return;
+  }
+  if (refine_at(draws, place_at(point_), workspace)) {
+    pool_.know(branch_, point_, refiner_.result().energy);
+  }
+}
+
+void EnergyBranches::end_places() noexcept {
+  pool_.drop_low();
+  origin_ = pool_.best_at(0);
+  if (reach_ < kLeastReach) {
+    phase_ = Phase::kReady;
+    return;
+  }
+  begin_fit(kFirstDegree);
+}
+
+void EnergyBranches::begin_fit(std::size_t degree) noexcept {
+  degree_ = degree;
+  terms_ = cube_terms(degree);
+  for (double& coefficient : coefficients_) {
+    coefficient = 0.0;
+  }
+  for (Fit& fit : fits_) {
+    fit = Fit();
+    fit.nearest = std::numeric_limits<double>::infinity();
+  }
+  point_ = 0;
+  branch_ = 0;
+  phase_ = Phase::kNodes;
+}
+
+void EnergyBranches::step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
+  const CubeNodes nodes(degree_, axes_);
+  if (!refine_at(draws, from_point(nodes.point(point_)), workspace)) {
+    return;
+  }
+  energies_[branch_] = refiner_.result().energy;
+  nodes.add(point_, energies_[branch_] - origin_, coefficients(branch_));
+  if (++branch_ < pool_.count()) {
+    return;
+  }
+  compare_branches();
+  branch_ = 0;
+  if (++point_ == nodes.size()) {
+    end_fit();
+  }
+}
+
+void EnergyBranches::end_fit() noexcept {
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    const Span<double> terms = coefficients(b);
+    to_powers(degree_, terms);
+    terms[terms_ - 1] += origin_;  // The constant one.
+  }
+  point_ = 0;
+  phase_ = Phase::kChecks;
+}
+
+void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
+  const CubePoint point = check_at(point_);
+  if (!refine_at(draws, from_point(point), workspace)) {
+    return;
+  }
+  energies_[branch_] = refiner_.result().energy;
+  const double error = abs(value(branch_, point) - energies_[branch_]);
+  fits_[branch_].error = std::max(fits_[branch_].error, error);
+  if (++branch_ < pool_.count()) {
+    return;
+  }
+  compare_branches();
+  branch_ = 0;
+  do {
+    ++point_;
+  } while (point_ < kCorners && !is_corner(point_));
+  if (point_ == kChecks) {
+    end_checks();
+  }
+}
+
+/// How far each branch is below the best at a point where all have been refined.
+void EnergyBranches::compare_branches() noexcept {
+  const double best = *std::max_element(energies_, energies_ + pool_.count());
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    fits_[b].nearest = std::min(fits_[b].nearest, (best - energies_[b]) / abs(best));
+  }
+}
+
+double EnergyBranches::accepted_error(std::size_t branch) const noexcept {
+  // A unit of a place has the variance 1, or that of a uniform number within +-1.
+  const double unit = is_normal_ ? inverse_reach_ : kInverseRoot3;
+  double variance = 0.0;
+  for (const double slope : cube_slopes(degree_, coefficients(branch))) {
+    variance += slope * unit * (slope * unit);
+  }
+  return std::max(kAcceptedError * abs(origin_), kAcceptedDeviation * sqrt(variance));
+}
+
+void EnergyBranches::end_checks() noexcept {
+  drop_low();
+  tolerance_ = kAcceptedError;
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    Fit& fit = fits_[b];
+    const double accepted = accepted_error(b);
+    fit.has_failed = !(fit.error <= accepted);
+    fit.doubt = fit.has_failed ? kDoubt * fit.error : 0.0;
+    tolerance_ = fit.has_failed ? tolerance_ : std::max(tolerance_, accepted / abs(origin_));
+  }
+  if (can_raise_degree()) {
+    begin_fit(degree_ + 1);
+    return;
+  }
+  phase_ = Phase::kReady;
+}
+
+bool EnergyBranches::can_raise_degree() const noexcept {
+  if (degree_ == kMaxCubeDegree || pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
+    return false;
+  }
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    if (fits_[b].has_failed && fits_[b].error <= kMostHope * accepted_error(b)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void EnergyBranches::drop_low() noexcept {
+  const double room = kRoomBetweenNodes * pool_.variation() + kSame;
+  for (std::size_t b = pool_.count(); b-- > 0;) {
+    if (fits_[b].nearest > room) {
+      remove(b);
+    }
+  }
+}
+
+void EnergyBranches::remove(std::size_t branch) noexcept {
+  const std::size_t end = pool_.count();
+  std::copy(coefficients_ + (branch + 1) * terms_, coefficients_ + end * terms_,
+            coefficients_ + branch * terms_);
+  std::copy(fits_ + branch + 1, fits_ + end, fits_ + branch);
+  pool_.remove(branch);
+}
+
+double EnergyBranches::value(std::size_t branch, const CubePoint& point) const noexcept {
+  return cube_value(degree_, coefficients(branch), point);
+}
+
+void EnergyBranches::begin() noexcept {
+  pending_ = (1U << pool_.count()) - 1U;
+  energy_ = -std::numeric_limits<double>::infinity();
+}
+
+void EnergyBranches::begin(const DeviceDraws::Place& place) noexcept {
+  if (phase_ != Phase::kReady || degree_ == 0 || !is_within_reach(place)) {
+    begin();
+    return;
+  }
+  predict(to_point(place));
+}
+
+void EnergyBranches::predict(const CubePoint& point) noexcept {
+  const std::size_t count = pool_.count();
+  pending_ = 0;
+  if (count == 1 && !fits_[0].has_failed) {
+    energy_ = value(0, point);
+    return;
+  }
+  double values[kBranches];
+  double surely = -std::numeric_limits<double>::infinity();
+  energy_ = surely;
+  for (std::size_t b = 0; b < count; ++b) {
+    values[b] = value(b, point);
+    surely = std::max(surely, values[b] - fits_[b].doubt);
+    energy_ = fits_[b].has_failed ? energy_ : std::max(energy_, values[b]);
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    if (fits_[b].has_failed && !(values[b] + fits_[b].doubt < surely)) {
+      pending_ |= 1U << b;
+    }
+  }
+}
+
+std::size_t EnergyBranches::first_pending() const noexcept {
+  return static_cast<std::size_t>(__builtin_ctz(pending_));
+}
+
+void EnergyBranches::begin_refinement(const DeviceDraws& draws, const Accelerometer& device,
+                                      GridWorkspace& workspace) noexcept {
+  start_refinement(draws, first_pending(), device, workspace);
+}
+
+void EnergyBranches::step(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
+  if (done() || !step_refinement(workspace)) {
+    return;
+  }
+  energy_ = std::max(energy_, refiner_.result().energy);
+  pending_ &= pending_ - 1U;
+  if (!done()) {
+    start_refinement(draws, first_pending(), target_, workspace);
+  }
+}
+
+}  // namespace emax
