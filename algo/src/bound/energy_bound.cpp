@@ -139,9 +139,9 @@ void DissipationCheck::fill_inputs(const ModalModel& model) noexcept {
 
 void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
   const Accelerometer& device = model.device();
-  const Butterworth& filter = model.filter();
+  const ReferenceFilter& filter = model.filter();
   const double w0 = kTwoPi * device.natural_frequency_hz;
-  const double wc = kTwoPi * filter.cutoff_hz;
+  const double wc = kTwoPi * filter.band_hz;
   const double b = device.damping;
   // |Ka| and |s^2 Ka|/w0^2 have the same maximum over frequency; within T neither can amplify by
   // more than 1 plus the integral of the envelope of its impulse response.
@@ -156,7 +156,7 @@ void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
   // Of order 1 the filter passes s^2 K no more, but s K: w = W' with W of mean zero, |W| <= (tau/(2
   // pi)) |w|. From order 2 on |s^2 Kf| <= gain wc^2.
   const double filter_remainder =
-      filter.gain * (filter.order == 1 ? wc * step_s_ / kTwoPi : beam * wc * wc);
+      filter.gain * (filter.relative_degree == 1 ? wc * step_s_ / kTwoPi : beam * wc * wc);
   if (criterion_ == Criterion::kIntegralSquareError) {
     remainder_ = device_remainder + filter_remainder;
     mixed_remainder_ = 0.0;
@@ -282,7 +282,7 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   }
   const bool is_long = grid > kMaxProposalCells;
   steps_ = grid * (is_long ? kStepsPerCellOfLongGrid : kStepsPerCell) *
-           (model.filter().order == 1 ? kMoreStepsForOrder1 : 1);
+           (model.filter().relative_degree == 1 ? kMoreStepsForOrder1 : 1);
   cells_ = smaller(kProposalCellsPerCell * grid, kMaxProposalCells);
   duration_s_ = duration_s;
   proposal_s_ =

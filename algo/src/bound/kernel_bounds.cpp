@@ -106,10 +106,10 @@ double pulse_energy(const ModalModel& model, double left_s, double width_s) noex
 
 Status KernelBounds::start(const ModalModel& model, double duration_s,
                            Span<double> numbers) noexcept {
-  if (!(duration_s > 0.0) || model.criterion() != Criterion::kIntegralSquareError) {
+  if (!(duration_s > 0.0) || !model.is_square()) {
     return Status::kInvalidArgument;
   }
-  if (model.filter().order < 2) {
+  if (model.filter().relative_degree < 2) {
     return Status::kInvalidOrder;
   }
   const std::size_t intervals = mesh_intervals(model, duration_s);

@@ -53,9 +53,7 @@ void clear(MaximumEnergy& maximum) noexcept {
 }
 
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
-  const double f0 = model.device().natural_frequency_hz;
-  const double fc = model.filter().cutoff_hz;
-  const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * (f0 > fc ? f0 : fc)));
+  const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * model.fastest_hz()));
   return cells < kMinCells ? kMinCells : cells;
 }
 
@@ -66,7 +64,7 @@ std::size_t search_cells(const ModalModel& model, const SearchSettings& settings
 
 double ascent_shift(const ModalModel& model, double cell_s) noexcept {
   const double gain = model.filter().gain;
-  return model.criterion() == Criterion::kEnergyDifference ? gain * gain * cell_s : 0.0;
+  return model.is_square() ? 0.0 : gain * gain * cell_s;
 }
 
 void PulseTurn::start() noexcept {

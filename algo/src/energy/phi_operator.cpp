@@ -42,7 +42,7 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
   step_[count_] = {};
   end_[count_] = {};
   correlation_[count_] = {};
-  const bool square = model.criterion() == Criterion::kIntegralSquareError;
+  const bool square = model.is_square();
   if (square) {
     diagonal_limit_ = endless_diagonal_;
   }

@@ -29,18 +29,20 @@ Status ModalModel::set(const Accelerometer& device, const Butterworth& filter,
   if (filter_status != Status::kOk) {
     return filter_status;
   }
+  return set(device, butterworth(filter), ErrorMeasure{criterion});
+}
+
+Status ModalModel::set(const Accelerometer& device, const ReferenceFilter& filter,
+                       const ErrorMeasure& measure) noexcept {
+  const Status status = validate(device);
+  if (status != Status::kOk) {
+    return status;
+  }
   device_ = device;
   filter_ = filter;
-  criterion_ = criterion;
-  const FilterModes filter_modes = modes_of(filter);
-  modes_[0] = mode_of(device);
-  for (std::size_t i = 0; i < filter_modes.count; ++i) {
-    modes_[1 + i] = {filter_modes.modes[i].pole, -filter_modes.modes[i].residue};
-  }
-  count_ = 1 + filter_modes.count;
-  fill_gramians(count_);
-  fill_sums_over_filter();
-  fill_switch_weights();
+  criterion_ = measure.criterion;
+  count_ = 1 + filter.count;
+  fill_modes();
   return Status::kOk;
 }
 
@@ -57,20 +59,34 @@ Status ModalModel::set_device(const Accelerometer& device) noexcept {
 }
 
 Status ModalModel::set_gain(double gain) noexcept {
-  Butterworth filter = filter_;
-  filter.gain = gain;
-  const Status status = validate(filter);
-  if (status != Status::kOk) {
-    return status;
+  if (!(gain >= 0.0) || !is_finite(gain) || (filter_.gain == 0.0 && gain > 0.0)) {
+    return Status::kInvalidArgument;
   }
-  filter_ = filter;
-  const FilterModes filter_modes = modes_of(filter);
-  for (std::size_t i = 0; i < filter_modes.count; ++i) {
-    modes_[1 + i].residue = -filter_modes.modes[i].residue;
+  if (gain == filter_.gain) {
+    return Status::kOk;
   }
+  const double ratio = gain / filter_.gain;
+  for (Mode& mode : filter_.modes) {
+    mode.residue = ratio * mode.residue;
+  }
+  filter_.gain = gain;
+  fill_modes();
+  return Status::kOk;
+}
+
+double ModalModel::fastest_hz() const noexcept {
+  const double f0 = device_.natural_frequency_hz;
+  return f0 > filter_.band_hz ? f0 : filter_.band_hz;
+}
+
+void ModalModel::fill_modes() noexcept {
+  modes_[0] = mode_of(device_);
+  for (std::size_t i = 0; i < filter_.count; ++i) {
+    modes_[1 + i] = {filter_.modes[i].pole, -filter_.modes[i].residue};
+  }
+  fill_gramians(count_);
   fill_sums_over_filter();
   fill_switch_weights();
-  return Status::kOk;
 }
 
 void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
@@ -171,11 +187,15 @@ double ModalModel::impulse_response(double time_s) const noexcept {
 }
 
 double ModalModel::device_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : response(modes().first(1), time_s);
+  if (time_s < 0.0) {
+    return 0.0;
+  }
+  const Mode mode = mode_of(device_);
+  return response(Span<const Mode>(&mode, 1), time_s);
 }
 
 double ModalModel::filter_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : -response(modes().from(1), time_s);
+  return time_s < 0.0 ? 0.0 : response(filter_.terms(), time_s);
 }
 
 double ModalModel::step_response(double time_s) const noexcept {

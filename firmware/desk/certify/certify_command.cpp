@@ -357,13 +357,14 @@ void write_text(const Result& result, app::TextWriter& out) {
   const ProvenEnergy& proven = result.proven;
   const EnergyCertificate& certificate = *proven.certificate;
   const Accelerometer& device = proven.model->device();
-  const Butterworth& filter = proven.model->filter();
+  const ReferenceFilter& filter = proven.model->filter();
   const std::size_t switches = proven.signal->count();
   const double duration_s = proven.signal->duration_s();
   out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
   out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
-  out.text("\nFilter      Butterworth, order ").integer(static_cast<std::uint64_t>(filter.order));
-  out.text(", cutoff ").general(filter.cutoff_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
+  out.text("\nFilter      Butterworth, order ")
+      .integer(static_cast<std::uint64_t>(filter.relative_degree));
+  out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
   out.text(" V/(m/s^2)\nSignals     of any shape within +-").general(proven.limit_mps2, 7);
   out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n\n");
   out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");

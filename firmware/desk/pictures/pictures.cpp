@@ -48,11 +48,11 @@ std::string parameters_of(const Evaluation& evaluation) {
 }
 
 std::string filter_of(const Evaluation& evaluation) {
-  const Butterworth& filter = evaluation.model().filter();
+  const ReferenceFilter& filter = evaluation.model().filter();
   return words_of([&](TextWriter& out) {
     out.text("reference filter: Butterworth, order ");
-    out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
-    out.general(filter.cutoff_hz, 6).text(" Hz, gain ").general(filter.gain, 5);
+    out.integer(static_cast<std::uint64_t>(filter.relative_degree)).text(", cutoff ");
+    out.general(filter.band_hz, 6).text(" Hz, gain ").general(filter.gain, 5);
     out.text(" V/(m/s²)");
   });
 }
@@ -328,7 +328,7 @@ double end_of_table_s(const Evaluation& evaluation) {
 
 double fastest_hz(const Evaluation& evaluation) {
   return std::max(evaluation.device().estimate.natural_frequency_hz,
-                  evaluation.model().filter().cutoff_hz);
+                  evaluation.model().filter().band_hz);
 }
 
 // Of the time after the device has settled only a part is shown.

@@ -11,6 +11,7 @@
 #include "emax/model/accelerometer.hpp"
 #include "emax/model/butterworth.hpp"
 #include "emax/model/mode.hpp"
+#include "emax/model/reference_filter.hpp"
 
 namespace emax {
 
@@ -20,6 +21,11 @@ inline constexpr std::size_t kMaxModes = 1 + kMaxFilterModes;
 enum class Criterion : std::uint8_t {
   kIntegralSquareError,  ///< Of y = ya - yf, paper equations (8), (14), (15), (20): never negative.
   kEnergyDifference,     ///< E(ya) - E(yf), paper equations (5) and (13): may be negative.
+};
+
+/// What is called the error, and of which energy.
+struct ErrorMeasure {
+  Criterion criterion = {};
 };
 
 /// A value of the impulse response and when it occurs.
@@ -49,6 +55,12 @@ class ModalModel {
   ///   has changed.
   Status set(const Accelerometer& device, const Butterworth& filter, Criterion criterion) noexcept;
 
+  /// The same for any reference filter, which must be as `ReferenceFilter` says.
+  ///
+  /// @returns As `validate()` of the sensor; nothing has changed unless it is kOk.
+  Status set(const Accelerometer& device, const ReferenceFilter& filter,
+             const ErrorMeasure& measure) noexcept;
+
   /// Exchanges the sensor and keeps filter and criterion. `set()` comes first.
   ///
   /// @returns As `validate()`; nothing has changed unless it is kOk.
@@ -57,12 +69,16 @@ class ModalModel {
   /// Multiplies the filter's gain: for a filter that follows the sensor's sensitivity.
   ///
   /// @param[in] gain In V/(m/s^2), finite and not negative, else kInvalidArgument and nothing has
-  ///   changed.
+  ///   changed. A filter that has a gain of 0 keeps it: kInvalidArgument for any other.
   Status set_gain(double gain) noexcept;
 
   const Accelerometer& device() const noexcept { return device_; }
-  const Butterworth& filter() const noexcept { return filter_; }
+  const ReferenceFilter& filter() const noexcept { return filter_; }
   Criterion criterion() const noexcept { return criterion_; }
+  /// @returns Whether the energy is that of one output, so that it is never negative.
+  bool is_square() const noexcept { return criterion_ != Criterion::kEnergyDifference; }
+  /// @returns The larger of the sensor's f0 and the end of the filter's band, in Hz.
+  double fastest_hz() const noexcept;
   Span<const Mode> modes() const noexcept { return Span<const Mode>(modes_, count_); }
 
   /// c/(p_i + p_j) and c/(p_i + conj p_j), c being 1, or for the energy difference +1 for two
@@ -112,6 +128,7 @@ class ModalModel {
   static constexpr std::size_t pair(std::size_t i, std::size_t j) noexcept {
     return j * (j + 1) / 2 + i;
   }
+  void fill_modes() noexcept;
   void fill_gramians(std::size_t first_row_count) noexcept;
   void fill_sums_over_filter() noexcept;
   void fill_switch_weights() noexcept;
@@ -127,7 +144,7 @@ class ModalModel {
   Complex filter_settled_[kMaxModes] = {};
   double static_power_ = 0.0;
   Accelerometer device_ = {};
-  Butterworth filter_ = {};
+  ReferenceFilter filter_ = {};
   std::size_t count_ = 0;
   Criterion criterion_ = {};
 };
