@@ -5,6 +5,7 @@
 
 #include "emax/base/elementary.hpp"
 #include "emax/base/wichmann_hill.hpp"
+#include "emax/energy/known_energy.hpp"
 #include "emax/energy/refinement.hpp"
 
 namespace emax {
@@ -26,6 +27,8 @@ constexpr std::size_t kWorkOfRefinement = 96;
 /// What the energy of a pulse costs, and how much of that is done at once.
 constexpr std::size_t kWorkOfPulse = 12;
 constexpr std::size_t kWorkOfPulses = 512;
+/// Rounding of more than this part of the energy may have led the search astray.
+constexpr double kTrusted = 1e-4;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
 /// What each pattern may take of them, whatever the capacity, so that it changes no pattern.
 constexpr std::uint64_t kNumbersPerPattern = 8192;
@@ -45,6 +48,7 @@ std::size_t cells_for(double duration_s, double cell_s) noexcept {
 
 void clear(MaximumEnergy& maximum) noexcept {
   maximum.energy = 0.0;
+  maximum.rounding = 0.0;
   maximum.signal.clear();
   maximum.cells = 0;
   maximum.starts = 0;
@@ -53,7 +57,7 @@ void clear(MaximumEnergy& maximum) noexcept {
 }
 
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
-  const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * model.fastest_hz()));
+  const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * model.grid_hz()));
   return cells < kMinCells ? kMinCells : cells;
 }
 
@@ -147,8 +151,47 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   phase_ = Phase::kStart;
   has_result_ = false;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
-  shortest_half_period_s_ = 0.5 / model.device().natural_frequency_hz;
-  return Status::kOk;
+  const double f0 = model.device().natural_frequency_hz;
+  shortest_half_period_s_ = 0.5 / (f0 > 0.0 ? f0 : model.filter().band_hz);
+  return look_at_one_sided(model);
+}
+
+/// Ends the search if the constant signal is known to be the best one.
+Status EnergySearch::look_at_one_sided(const ModalModel& model) noexcept {
+  const OneSidedResponse constant = one_sided_response(model, settings_.duration_s);
+  if (!constant.holds) {
+    return Status::kOk;
+  }
+  const KnownEnergy& known = constant.energy;
+  climbs_ = 0;
+  if (!(known.rounding <= kPermittedRounding * known.energy)) {
+    return Status::kLostDigits;
+  }
+  has_result_ = true;
+  result_.energy = known.energy;
+  result_.rounding = known.rounding;
+  result_.at_rest = true;
+  // Cannot fail: no times.
+  (void)result_.signal.set(Span<const double>(), settings_.duration_s);
+  return check_delay(model, known.energy, settings_.duration_s);
+}
+
+/// How far the result is known; where the closed form loses digits, by another form.
+Status EnergySearch::finish(const ModalModel& model) noexcept {
+  result_.rounding = energy_rounding(model, settings_.duration_s, result_.signal.count());
+  const double size = abs(result_.energy);
+  if (!(result_.rounding <= kTrusted * size)) {
+    return Status::kLostDigits;
+  }
+  if (model.moved_by() > 0.0 || !(result_.rounding <= kPermittedRounding * size)) {
+    const EnergyAnswer answer = known_energy(model, result_.signal);
+    if (answer.status != Status::kOk) {
+      return answer.status;
+    }
+    result_.energy = answer.known.energy;
+    result_.rounding = answer.known.rounding;
+  }
+  return check_delay(model, result_.energy, settings_.duration_s);
 }
 
 double EnergySearch::progress() const noexcept {
@@ -168,7 +211,10 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
   // A signal with more switches than the table holds must not be passed over in silence if it beats
   // all others.
   const bool lost = !has_result_ || unstorable_energy_ > result_.energy;
-  return done() && lost ? Status::kTooManySwitches : Status::kOk;
+  if (!done()) {
+    return Status::kOk;
+  }
+  return lost ? Status::kTooManySwitches : finish(model);
 }
 
 /// @returns What it has cost, in cells of a product.

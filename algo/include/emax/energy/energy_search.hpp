@@ -35,6 +35,7 @@ struct SearchSettings {
 /// What a search ends with. Energies are for a = 1, in (V/(m/s^2))^2 s.
 struct MaximumEnergy {
   double energy = 0.0;
+  double rounding = 0.0;  ///< By how much rounding may have moved the energy: at most 1e-9 of it.
   SwitchingSignal signal = {};
   std::size_t cells = 0;       ///< Of the grid that was searched.
   std::size_t starts = 0;      ///< Starting signals tried.
@@ -121,6 +122,9 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// have gains to offer again now that its switches have moved, up to 4 times. Of equals the first
 /// one wins, so the result is the same on every target. 2.6 KiB beside the workspace.
 ///
+/// Where k has one sign on all of [0, T], which a short T makes sure of, the constant signal has
+/// the greatest energy (`OneSidedResponse`), and the search is done at its start.
+///
 /// Effort: at most kStarts + kPolishings climbs. One climb takes 10 to 40 products with Phi where
 /// few switches are best, and up to 250 where it is a hundred switches; a product costs some 25
 /// instructions per cell and mode, and looking for a pulse two thirds of a product.
@@ -141,6 +145,7 @@ class EnergySearch {
   ///   duration, or no iteration or more than kMaxIterations.
   /// * kTooManyCells: The grid would need more than kMaxCells cells: shorten T, or for kPaper take
   ///   a longer step.
+  /// * kLostDigits: As for `step()`.
   Status start(const ModalModel& model, const SearchSettings& settings) noexcept;
 
   /// Makes products with Phi, looks for pulses and refines, until it has done as much as
@@ -153,6 +158,10 @@ class EnergySearch {
   /// * kOk: `done()` tells whether it was the last step.
   /// * kTooManySwitches: With the last step: the best signal has more than kMaxSwitches switches.
   ///   `result()` is then the best of those that have fewer, which is not the maximum: shorten T.
+  /// * kLostDigits: With the last step: rounding is more than 1e-9 of the energy in every form, or
+  ///   so much that the search has not seen what it did.
+  /// * kDelayNotResolved: With the last step: the delay leaves open more than 1 % of the root mean
+  ///   square of the error.
   Status step(const ModalModel& model, GridWorkspace& workspace, Span<double> trace = {}) noexcept;
 
   bool done() const noexcept { return climbs_made_ == climbs_; }
@@ -184,6 +193,8 @@ class EnergySearch {
   void next_climb() noexcept;
   bool is_worth_refining(double energy) const noexcept;
   void take(const SwitchingSignal& signal, double energy) noexcept;
+  Status look_at_one_sided(const ModalModel& model) noexcept;
+  Status finish(const ModalModel& model) noexcept;
   bool is_polishing() const noexcept { return climbs_made_ >= kStarts; }
 
   MaximumEnergy result_ = {};

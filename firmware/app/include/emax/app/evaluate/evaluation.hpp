@@ -391,6 +391,6 @@ class Evaluation {
 
 static_assert(std::is_trivially_copyable_v<Evaluation>);
 static_assert(!kHasDefaultCapacities ||
-              sizeof(Evaluation) + sizeof(EvaluationWorkspace) <= 92 * 1024);
+              sizeof(Evaluation) + sizeof(EvaluationWorkspace) <= 93 * 1024);
 
 }  // namespace emax::app
