@@ -178,7 +178,8 @@ Status EnergySearch::look_at_one_sided(const ModalModel& model) noexcept {
 
 /// How far the result is known; where the closed form loses digits, by another form.
 Status EnergySearch::finish(const ModalModel& model) noexcept {
-  result_.rounding = energy_rounding(model, settings_.duration_s, result_.signal.count());
+  result_.rounding =
+      energy_rounding(model, settings_.duration_s, result_.signal.count(), result_.energy);
   const double size = abs(result_.energy);
   if (!(result_.rounding <= kTrusted * size)) {
     return Status::kLostDigits;

@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kLongestStep = 0.5;  // Radians of the fastest pole.
 constexpr double kOneSidedSteps = 1024.0;
-/// What a step may add to the relative error of a state: some roundings.
-constexpr double kStepRounding = 8.0 * 0x1p-53;
-/// Of the poles, and of the first steps.
-constexpr double kFirstRounding = 64.0 * 0x1p-53;
+/// Half units in the last place of the states: of poles and single steps; and of many steps, whose
+/// roundings have no common sign and die away with the modes.
+constexpr double kFirstRounding = 16.0 * 0x1p-53;
+constexpr double kStepRounding = 4.0 * 0x1p-53;
 /// Squares below it are no longer numbers of full precision.
 constexpr double kSmallest = 1e-290;
 
@@ -189,15 +189,21 @@ void CascadeResponse::advance(double length_s, double value) noexcept {
   }
 }
 
+/// A pole that is off by a rounding turns the phase of its mode by that times 1/beta at most.
+double CascadeResponse::relative_rounding() const noexcept {
+  const double turns = is_ideal_ ? 0.0 : sqrt(sensor_.speed2) / sensor_.drag;
+  return kFirstRounding + kStepRounding * (sqrt(static_cast<double>(steps_)) + turns);
+}
+
 double CascadeResponse::output_rounding() const noexcept {
-  const double relative = kFirstRounding + kStepRounding * static_cast<double>(steps_);
+  const double relative = relative_rounding();
   return relative * (criterion_ == Criterion::kInBandError
                          ? (largest_device_ + gain_) * largest_filter_
                          : largest_device_ + gain_ * largest_filter_);
 }
 
 KnownEnergy CascadeResponse::energy() const noexcept {
-  const double relative = kFirstRounding + kStepRounding * static_cast<double>(steps_);
+  const double relative = relative_rounding();
   if (criterion_ == Criterion::kEnergyDifference) {
     return {energy_, 2.0 * relative * terms_ + kSmallest};
   }

@@ -18,6 +18,7 @@
 #include "emax/base/decimal.hpp"
 #include "emax/bound/energy_certificate.hpp"
 #include "emax/identify/frequency_response.hpp"
+#include "emax/model/cascade_response.hpp"
 
 #include "desk/certify/certificate_file.hpp"
 #include "desk/cli/console.hpp"
@@ -402,6 +403,16 @@ Problem run_certify(Span<const std::string_view> arguments) {
     return problem;
   }
   const ModalModel model = evaluation.model();
+  if (model.is_nothing()) {
+    return bad_input(
+        "--model: the sensor is the filter, so the error is 0 and nothing is left to prove; "
+        "expected another sensor or filter");
+  }
+  if (one_sided_response(model, evaluation.maximum().signal.duration_s()).holds) {
+    return bad_input(
+        "--time: the impulse response has one sign within T, so the constant signal is the worst "
+        "one and nothing is left to prove; expected a longer time, or emax report");
+  }
   Work work;
   problem = work.start(model, evaluation.maximum().signal.duration_s(), options.effort_s);
   if (problem ||

@@ -12,9 +12,12 @@ namespace emax {
 /// The part of an energy that rounding may change in its answer.
 inline constexpr double kPermittedRounding = 1e-9;
 
-/// How far rounding may move `energy()` of a signal with so many switches: some half units in the
-/// last place of all that it sums. Two products for each two modes.
-double energy_rounding(const ModalModel& model, double duration_s, std::size_t switches) noexcept;
+/// How far rounding may move `energy()` of a signal with so many switches: half units in the last
+/// place of all that it sums. Two products for each two modes.
+///
+/// @param[in] energy The answer.
+double energy_rounding(const ModalModel& model, double duration_s, std::size_t switches,
+                       double energy) noexcept;
 
 /// An answer, or why there is none.
 struct EnergyAnswer {

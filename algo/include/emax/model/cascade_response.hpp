@@ -77,6 +77,7 @@ class CascadeResponse {
   void take_series(double step_s, double value, Series& series) noexcept;
   void add_energy(const Series& series, double step_s) noexcept;
   void look_for_turns(const Series& series) noexcept;
+  double relative_rounding() const noexcept;
 
   Section sections_[kMaxFilterModes] = {};
   Section sensor_ = {};
