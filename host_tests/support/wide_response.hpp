@@ -4,12 +4,25 @@
 
 #include <cmath>
 #include <cstddef>
-#include <quadmath.h>
 #include <vector>
+
+__extension__ typedef __float128 Quad;
+
+// clang has no quadmath.h; the library is the same.
+extern "C" {
+Quad expq(Quad x);
+Quad sinq(Quad x);
+Quad cosq(Quad x);
+Quad asinq(Quad x);
+Quad sqrtq(Quad x);
+Quad fabsq(Quad x);
+}
 
 namespace emax::test {
 
-__extension__ using Wide = __float128;
+using Wide = Quad;
+
+inline const Wide kWidePi = 2 * asinq(1);
 
 struct WideComplex {
   Wide re = 0;
@@ -39,7 +52,7 @@ class WideResponse {
  public:
   WideResponse(double sensitivity, double f0_hz, double damping, int order, double cutoff_hz,
                double gain, WideError error, double delay_s = 0.0) {
-    const Wide two_pi = 2 * M_PIq;
+    const Wide two_pi = 2 * kWidePi;
     const Wide s = sensitivity;
     const Wide w0 = two_pi * f0_hz;
     const Wide wc = two_pi * cutoff_hz;
@@ -52,7 +65,7 @@ class WideResponse {
     };
     std::vector<WideComplex> poles;
     for (int i = 1; i <= order; ++i) {
-      const Wide angle = M_PIq * (2 * i + order - 1) / (2 * order);
+      const Wide angle = kWidePi * (2 * i + order - 1) / (2 * order);
       poles.push_back({wc * cosq(angle), 2 * i == order + 1 ? Wide(0) : wc * sinq(angle)});
     }
     const auto unit_filter = [&](WideComplex p, int without) {
@@ -154,7 +167,7 @@ class WideResponse {
   /// Of Gauss and Legendre on [0, 1], by Newton's method on the recursion of the polynomials.
   static void fill_nodes(Wide (&nodes)[12], Wide (&weights)[12]) {
     for (int i = 0; i < 12; ++i) {
-      Wide x = cosq(M_PIq * (i + Wide(0.75)) / Wide(12.5));
+      Wide x = cosq(kWidePi * (i + Wide(0.75)) / Wide(12.5));
       Wide slope = 1;
       for (int iteration = 0; iteration < 8; ++iteration) {
         Wide before = 1;

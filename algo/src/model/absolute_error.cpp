@@ -73,6 +73,7 @@ Status AbsoluteError::start(const ModalModel& model, double duration_s) noexcept
     rounding_ = constant.output_rounding;
     return Status::kOk;
   }
+  last_step_ = model.feedthrough();  // Just after 0.
   // If k(0) is 0 the first sign is that of the first sample.
   next_ = 1;
   if (model.starts_at_zero()) {

@@ -13,6 +13,9 @@ constexpr double kOneSidedSteps = 1024.0;
 /// roundings have no common sign and die away with the modes.
 constexpr double kFirstRounding = 16.0 * 0x1p-53;
 constexpr double kStepRounding = 4.0 * 0x1p-53;
+/// A delayed filter begins with terms of both signs, which cancel while t is not much more than the
+/// delay: they are this many times its output at most where the delay is not refused for it.
+constexpr double kDelayedTerms = 64.0;
 /// Squares below it are no longer numbers of full precision.
 constexpr double kSmallest = 1e-290;
 
@@ -192,7 +195,8 @@ void CascadeResponse::advance(double length_s, double value) noexcept {
 /// A pole that is off by a rounding turns the phase of its mode by that times 1/beta at most.
 double CascadeResponse::relative_rounding() const noexcept {
   const double turns = is_ideal_ ? 0.0 : sqrt(sensor_.speed2) / sensor_.drag;
-  return kFirstRounding + kStepRounding * (sqrt(static_cast<double>(steps_)) + turns);
+  const double terms = is_delayed_ ? kDelayedTerms * kFirstRounding : kFirstRounding;
+  return terms + kStepRounding * (sqrt(static_cast<double>(steps_)) + turns);
 }
 
 double CascadeResponse::output_rounding() const noexcept {
