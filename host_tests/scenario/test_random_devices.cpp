@@ -17,7 +17,7 @@ namespace emax {
 namespace {
 
 /// A search of more cells takes seconds; energies and rounding are looked at for all.
-constexpr double kMostCells = 2000.0;
+constexpr double kMostCells = 600.0;
 /// What the second implementation loses: its partial fractions cancel, too, with 34 digits.
 constexpr double kLeastWideEnergy = 1e-36;
 
