@@ -217,6 +217,15 @@ TEST(InBandFigures, PolesOfTheFilterHaveAnEnergyBetweenTheirNeighbours) {
   }
 }
 
+TEST(EnergySearch, ASensorNextToTheFilterIsRefused) {
+  for (const double damping : {0.707107, 0.7071068}) {
+    ModalModel model{};
+    ASSERT_EQ(model.set({0.1, 1000.0, damping}, {2, 1000.0, 0.1}, Criterion::kIntegralSquareError),
+              Status::kOk);
+    EXPECT_EQ(search(model, 2e-3).status, Status::kLostDigits);
+  }
+}
+
 TEST(InBandTrials, ReachTheMaximumOfACornerWithTheEstimatesDelay) {
   const ModalModel model = model_of(kPaperDevice, 10, kMatched);
   const Found best = search(model, 2e-3);

@@ -26,13 +26,13 @@ ModalModel model_of(const Accelerometer& device, const Butterworth& filter,
 }
 
 /// The integral over [0, t] of h(t - v) ka(v), h of gain 1, by 10 nodes of Gauss and Legendre on
-/// pieces of 2 us: exact to rounding.
+/// pieces of 10 us: exact to rounding.
 double filtered_sensor(const ModalModel& model, double time_s) {
   constexpr double kNodes[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
                                0.8650633666889845, 0.9739065285171717};
   constexpr double kWeights[] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
                                  0.1494513491505806, 0.0666713443086881};
-  const int pieces = static_cast<int>(time_s / 2e-6) + 1;
+  const int pieces = static_cast<int>(time_s / 10e-6) + 1;
   const double half_s = 0.5 * time_s / pieces;
   double sum = 0.0;
   for (int piece = 0; piece < pieces; ++piece) {
