@@ -150,6 +150,8 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   climbs_ = paper ? 1 : kStarts + kPolishings;
   phase_ = Phase::kStart;
   has_result_ = false;
+  is_lost_ = false;
+  rounding_ = model.is_square() ? energy_rounding(model, settings.duration_s, 0, 0.0) : 0.0;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
   const double f0 = model.device().natural_frequency_hz;
   shortest_half_period_s_ = 0.5 / (f0 > 0.0 ? f0 : model.filter().band_hz);
@@ -214,6 +216,9 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
   const bool lost = !has_result_ || unstorable_energy_ > result_.energy;
   if (!done()) {
     return Status::kOk;
+  }
+  if (is_lost_) {
+    return Status::kLostDigits;
   }
   return lost ? Status::kTooManySwitches : finish(model);
 }
@@ -320,6 +325,11 @@ void EnergySearch::end_fixed_point(std::size_t room) noexcept {
   const FixedPointResult& run = fixed_point_.result();
   trace_count_ = run.iterations + 1 < room ? run.iterations + 1 : room;
   climb_energy_ = run.energy;
+  // No later climb finds thousands of times as much.
+  if (rounding_ > 0.0 && !(run.energy > rounding_)) {
+    is_lost_ = true;
+    climbs_made_ = climbs_;
+  }
   if (turns_ == 0) {
     iterations_ = run.iterations;
     at_rest_ = run.at_rest;

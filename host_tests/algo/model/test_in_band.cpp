@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "emax/energy/fixed_point.hpp"
 #include "emax/energy/known_energy.hpp"
+#include "emax/energy/phi_operator.hpp"
 #include "emax/model/in_band.hpp"
 #include "emax/model/modal_model.hpp"
 
 #include "support/paper_device.hpp"
+#include "support/sign_pattern.hpp"
 
 namespace emax {
 namespace {
@@ -198,6 +201,43 @@ TEST(IdealSensor, PassesItsInputAtOnce) {
       (0.09 * u + 2.0 * 0.3 * 0.9 * -std::expm1(-u) + 0.405 * -std::expm1(-2.0 * u)) / wc;
   EXPECT_NEAR(energy(model, Span<const double>(), 2e-3), expected, 1e-15);
   EXPECT_DOUBLE_EQ(fast_switching_limit(model, 2e-3), 1.44 * 2e-3);
+}
+
+TEST(IdealSensor, KeepsThatOnTheGrid) {
+  for (const Criterion criterion :
+       {Criterion::kIntegralSquareError, Criterion::kEnergyDifference}) {
+    ModalModel model{};
+    ASSERT_EQ(model.set_ideal(1.2, butterworth({3, 700.0, 0.9}), criterion), Status::kOk);
+    test::SignPattern signs({1, 1, -1, -1, -1, 1, -1, 1, 1, 1, -1, 1});
+    SwitchingSignal signal{};
+    ASSERT_EQ(signal.set_signs(signs.view(), 3e-3), Status::kOk);
+    PhiOperator phi{};
+    ASSERT_EQ(phi.set(model, 3e-3, 12), Status::kOk);
+    double product[12];
+    phi.multiply(signs.view(), Span<double>(product));
+    const double expected = energy(model, signal);
+    EXPECT_NEAR(dot(signs.view(), Span<const double>(product)), expected, 1e-13);
+    // Turning one cell changes the energy by 4 (Phi_ii - x_i (Phi x)_i).
+    test::SignPattern turned({1, 1, -1, -1, 1, 1, -1, 1, 1, 1, -1, 1});
+    ASSERT_EQ(signal.set_signs(turned.view(), 3e-3), Status::kOk);
+    EXPECT_NEAR(energy(model, signal) - expected, 4.0 * (phi.diagonal(4) + product[4]), 1e-13);
+    EXPECT_LE(phi.diagonal(4), phi.diagonal_limit());
+  }
+}
+
+TEST(InBandError, WhatIsLeftOpenRaisesABound) {
+  const ModalModel model = model_of(kPaperDevice, {4, 1000.0, 1.037}, kMatched);
+  // epsilon is 2.7e-5.
+  EXPECT_NEAR(delay_tolerance(model), 2.693e-5 * 1.037, 1e-8);
+  const double root = 2e-3 + delay_tolerance(model) * std::sqrt(2e-3);
+  EXPECT_DOUBLE_EQ(true_bound(model, 4e-6, 2e-3), root * root);
+  EXPECT_EQ(true_bound(model_of(kPaperDevice, kPaperFilter, kPlain), 4e-6, 2e-3), 4e-6);
+  const ModalModel moved = model_of({0.1, 1000.0, 0.7071068}, {2, 1000.0, 0.1}, kPlain);
+  EXPECT_GT(true_bound(moved, 4e-6, 2e-3), 4e-6);
+  EXPECT_EQ(check_delay(model, 2e-3 * std::pow(101.0 * delay_tolerance(model), 2), 2e-3),
+            Status::kOk);
+  EXPECT_EQ(check_delay(model, 2e-3 * std::pow(99.0 * delay_tolerance(model), 2), 2e-3),
+            Status::kDelayNotResolved);
 }
 
 TEST(IdealSensor, HasNoInBandError) {

@@ -206,6 +206,7 @@ class EnergySearch {
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
   double unstorable_energy_ = 0.0;
+  double rounding_ = 0.0;  // Of any energy; a square below it is nothing but rounding.
   double climb_energy_ = 0.0;
   std::size_t trace_count_ = 0;
   std::size_t climbs_made_ = 0;
@@ -216,6 +217,7 @@ class EnergySearch {
   Phase phase_ = Phase::kStart;
   bool at_rest_ = false;
   bool has_result_ = false;
+  bool is_lost_ = false;  // In rounding.
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);
