@@ -159,7 +159,8 @@ class Certificate:
             model, limits = data["model"], data["signal"]
             self.system = reference.System(
                 reference.Accelerometer(model["S"], model["f0"], model["beta"]),
-                model["order"], model["cutoff"], model["gain"])
+                model["order"], model["cutoff"], model["gain"],
+                model.get("criterion", "ise"))
             self.time, self.limit = float(limits["T"]), float(limits["a"])
             self.energy = float(data["energy"]["E"])
             self.switches = [float(t) for t in data["energy"]["switch_times"]]

@@ -76,6 +76,10 @@ class Accelerometer:
         """Smallest decay rate of the response, 1/s."""
         return self.beta * 2.0 * math.pi * self.f0
 
+    def delay(self) -> float:
+        """Group delay at low frequencies, s."""
+        return self.beta / (math.pi * self.f0)
+
 
 class Butterworth:
     """The reference filter of (6): `order` 1 to 15, `cutoff` in Hz, `gain` in V/(m/s2).
@@ -181,12 +185,76 @@ class Kernel:
         return total
 
 
+class InBand:
+    """k of the in-band error y = h * (y_a - G x(t - tau)), h the filter with gain 1.
+
+    h * y_a comes from the filter's differential equations driven by the sensor's: one matrix
+    exponential for a panel, a Taylor polynomial inside. The delayed filter is h itself, at t - tau,
+    and for t < tau its continuation: the same differential equations solved backwards from t = 0.
+    """
+
+    def __init__(self, sensor: Accelerometer, unit_filter: Butterworth, gain: float,
+                 delay: float = 0.0) -> None:
+        self.filter, self.gain, self.delay = unit_filter, gain, delay
+        order, rate = unit_filter.order, 2.0 * math.pi * unit_filter.cutoff
+        w0 = 2.0 * math.pi * sensor.f0 / rate
+        matrix = np.zeros((order + 2, order + 2))
+        matrix[0, 1] = 1.0
+        matrix[1, :2] = [-w0**2, -2.0 * sensor.beta * w0]
+        matrix[2:, 2:] = Butterworth._cascade(order)
+        matrix[2 if order == 1 else 3, 0] = sensor.S
+        self._matrix, self._rate = matrix, rate
+        self._panel = 0.5 / float(np.linalg.norm(matrix, 2))
+        self._step = matrix_exponential(matrix * self._panel)
+        row = np.zeros(order + 2)
+        row[2 + (order - 1 if order % 2 else order - 2)] = 1.0
+        self._rows = [row]
+        for m in range(1, TAYLOR_TERMS):
+            self._rows.append(self._rows[-1] @ matrix * (self._panel / m))
+        self._observe = np.array(self._rows)
+        self._state = np.zeros(order + 2)
+        self._state[1] = w0**2  # An impulse in rate t.
+        self._coefficients: list[Array] = []
+
+    def continued(self, t: Array) -> Array:
+        """h(t) of the filter's modes for t of either sign, in 1/s."""
+        before = np.minimum(t, 0.0) * self._rate
+        system = Butterworth._cascade(self.filter.order)
+        start = np.zeros(self.filter.order)
+        start[0 if self.filter.order == 1 else 1] = 1.0
+        row = np.zeros(self.filter.order)
+        row[self.filter.order - 1 if self.filter.order % 2 else self.filter.order - 2] = 1.0
+        value = np.zeros(np.shape(t))
+        term = start
+        for m in range(40):  # |t| rate is at most 1.
+            value = value + (row @ term) * before**m
+            term = system @ term / (m + 1)
+        return np.where(t < 0.0, self._rate * value, self.filter.impulse_response(t))
+
+    def response(self, t: Array) -> Array:
+        """k(t) for t >= 0, in V/(m/s2)/s."""
+        theta = np.maximum(t, 0.0) * self._rate / self._panel
+        panel = theta.astype(np.int64)
+        while len(self._coefficients) <= int(panel.max(initial=0)):
+            self._coefficients.append(self._observe @ self._state)
+            self._state = self._step @ self._state
+        table = np.array(self._coefficients).T
+        u = theta - panel
+        value = table[TAYLOR_TERMS - 1][panel]
+        for m in range(TAYLOR_TERMS - 2, -1, -1):
+            value = value * u + table[m][panel]
+        passed = self._rate * value
+        reference = self.gain * self.continued(np.asarray(t) - self.delay)
+        return np.where(t < 0.0, 0.0, passed - reference)
+
+
 @dataclass(frozen=True)
 class System:
     """Accelerometer, reference filter and what is to be maximised.
 
-    `criterion` is "ise", the integral-square error (15), or "difference", the energy difference of
-    (5) and the left part of (13). Both are sums of signed energies of single kernels.
+    `criterion` is "ise", the integral-square error (15), "difference", the energy difference of (5)
+    and the left part of (13), or "band", the in-band error, its reference delayed by `delay` s. All
+    are sums of signed energies of single kernels.
     """
 
     sensor: Accelerometer
@@ -194,15 +262,21 @@ class System:
     cutoff: float = 1000.0
     gain: float | None = None  # None: the sensor's S
     criterion: str = "ise"
+    delay: float = 0.0
     filter: Butterworth = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         gain = self.sensor.S if self.gain is None else self.gain
         object.__setattr__(self, "filter", Butterworth(self.order, self.cutoff, gain))
+        unit = Butterworth(self.order, self.cutoff, 1.0)
+        in_band = InBand(self.sensor, unit, gain, self.delay) if self.criterion == "band" else None
+        object.__setattr__(self, "_in_band", in_band)
 
     def k(self, t: Array | float) -> Array:
-        """k(t) = k_a(t) - k_f(t) of (14), in V/(m/s2)/s."""
+        """k(t) = k_a(t) - k_f(t) of (14), or of the in-band error, in V/(m/s2)/s."""
         time = np.asarray(t, dtype=float)
+        if self._in_band is not None:
+            return self._in_band.response(time)
         return self.sensor.impulse_response(time) - self.filter.impulse_response(time)
 
     def panel(self) -> float:
@@ -211,14 +285,14 @@ class System:
 
     def kernels(self) -> list[tuple[float, Kernel]]:
         """The signed kernels whose energies add up to the criterion."""
-        if self.criterion == "ise":
+        if self.criterion in ("ise", "band"):
             return [(1.0, Kernel(self.k, self.panel()))]
         if self.criterion == "difference":
             return [
                 (1.0, Kernel(self.sensor.impulse_response, self.panel())),
                 (-1.0, Kernel(self.filter.impulse_response, self.panel())),
             ]
-        raise ValueError(f"criterion {self.criterion!r}: expected 'ise' or 'difference'")
+        raise ValueError(f"criterion {self.criterion!r}: expected 'ise', 'difference' or 'band'")
 
 
 def impulse_response_by_contour(
@@ -363,6 +437,18 @@ def _fast_switching_response(
         late = t > switch
         y[late] += 2.0 * (-1.0) ** (m + 1) * step_response(t[late] - switch)
     return limit * y
+
+
+def ideal_energy(
+    filt: Butterworth, sensitivity: float, switches: Sequence[float], time: float, limit: float
+) -> float:
+    """E of y = S x - y_f, the error against an ideal sensor, for a +-limit signal."""
+    inside = [t for t in switches if 0.0 < t < time]
+    kernel = Kernel(filt.impulse_response, filt.fastest_time())
+    t, weights = _time_nodes([0.0, *inside, time], kernel.panel, 12)
+    sign = (-1.0) ** np.searchsorted(np.array(inside), t)
+    y = limit * sensitivity * sign - _fast_switching_response(kernel, inside, t, limit)
+    return float(weights @ y**2)
 
 
 def signal_energy(
@@ -877,7 +963,9 @@ def main() -> None:
     parser.add_argument("--order", type=int, default=10)
     parser.add_argument("--cutoff", type=float, default=1000.0, help="Hz")
     parser.add_argument("--gain", type=float, help="filter gain, default S")
-    parser.add_argument("--criterion", choices=["ise", "difference"], default="ise")
+    parser.add_argument("--criterion", choices=["ise", "difference", "band"], default="ise")
+    parser.add_argument("--delay", type=float, help="s, of the reference in band; default none; "
+                        "a negative number: the sensor's 2 beta/(2 pi f0)")
     parser.add_argument("--time", type=float, default=0.002, help="T in s")
     parser.add_argument("--limit", type=float, help="a in m/s2, default the number of S")
     parser.add_argument("--step", type=float, default=2e-6, help="s")
@@ -890,7 +978,10 @@ def main() -> None:
 
     model = _numbers(options.model)
     sensor = Accelerometer(*model[:3])
-    system = System(sensor, options.order, options.cutoff, options.gain, options.criterion)
+    delay = options.delay or 0.0
+    if delay < 0.0:
+        delay = sensor.delay()
+    system = System(sensor, options.order, options.cutoff, options.gain, options.criterion, delay)
     limit = sensor.S if options.limit is None else options.limit
     result: dict[str, object]
     if options.what == "impulse":

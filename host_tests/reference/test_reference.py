@@ -406,6 +406,55 @@ class Box(Case):
             self.assertEqual(energy, ref.paper_method(system, 2e-3, LIMIT).best)
 
 
+class InBand(Case):
+    """y = h * (y_a - G x(t - tau))."""
+
+    def transfer(self, system: ref.System, s):
+        shift = np.exp(-s * system.delay)
+        filt = system.filter
+        return (system.sensor.transfer(s) - filt.gain * shift) * filt.transfer(s) / filt.gain
+
+    def test_response_against_the_contour_integral(self) -> None:
+        sensor = ref.Accelerometer(1.037, 2500.0, 0.3182)
+        for order in (1, 2, 4, 7, 10):
+            for delay in (0.0, sensor.delay()):
+                system = ref.System(sensor, order, 1000.0, 0.9, "band", delay)
+                rate = 2.0 * math.pi * 2500.0
+                for t in (5e-5, 2e-4, 6e-4):
+                    expected = ref.impulse_response_by_contour(
+                        lambda s: self.transfer(system, s), rate, t)
+                    # What the contour's rounding leaves, amplified by e^(0.8 rate t) = 2e3.
+                    self.assertLess(abs(float(system.k(np.array(t))) - expected), 1e-11 * rate,
+                                    f"order {order}, t = {t}")
+
+    def test_energies_of_known_signals(self) -> None:
+        """Found with other code; nine digits are given, of some signals only the largest energy."""
+        cases = (
+            (10, 0.0, [0.639919e-3], 7.66114200e-6),
+            (10, SENSOR.delay(), [0.365145378e-3, 0.946493860e-3], 3.30567639e-7),
+            (4, 0.0, [0.369196e-3, 0.908663e-3, 1.445841e-3], 2.02966723e-5),
+        )
+        for order, delay, switches, expected in cases:
+            system = ref.System(SENSOR, order, 1000.0, None, "band", delay)
+            self.near(ref.switching_energy(system, switches, 2e-3, LIMIT), expected, 5e-9)
+
+    def test_a_nearly_ideal_sensor_leaves_next_to_nothing(self) -> None:
+        plain = ref.System(ref.Accelerometer(1.0, 30e3, 0.7), 10, 1000.0, None, "band")
+        delayed = replace(plain, delay=plain.sensor.delay())
+        one = ref.switching_energy(plain, [0.622532e-3], 2e-3, 1.0)
+        other = ref.switching_energy(delayed, [0.320388e-3, 0.878639e-3, 1.445253e-3], 2e-3, 1.0)
+        self.assertAlmostEqual(100.0 * math.sqrt(one / 2e-3), 1.608, delta=5e-4)
+        self.assertAlmostEqual(100.0 * math.sqrt(other / 2e-3), 0.00059, delta=5e-6)
+
+    def test_the_ideal_sensor_of_the_other_criterion(self) -> None:
+        filt = ref.Butterworth(10, 1000.0, 1.037)
+        energy = ref.ideal_energy(filt, 1.037, [1.05854e-3], 2e-3, LIMIT)
+        self.near(energy, 5.080404e-3, 2e-7)
+        # Ever faster switching: 100 % of S a.
+        fast = ref.ideal_energy(filt, 1.037, np.arange(5e-6, 2e-3, 5e-6), 2e-3, LIMIT)
+        self.near(fast, 1.037**2 * LIMIT**2 * 2e-3, 1e-2)
+
+
 class Claims(Case):
     """The calculations behind the table of `claims.py`."""
 

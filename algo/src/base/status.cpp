@@ -98,6 +98,15 @@ const char* explain(Status status) noexcept {
     case Status::kUnknownRecord:
       return "What is stored there is of another version or does not fit this instrument; set it "
              "anew and store it again.";
+    case Status::kDelayTooLong:
+      return "The delay is below 0 or longer than 1/(2 pi cutoff); lower the cutoff, or take no "
+             "delay out.";
+    case Status::kDelayNotResolved:
+      return "The delayed filter is not exact enough for an error as small as this; take a higher "
+             "order, or take no delay out.";
+    case Status::kLostDigits:
+      return "The error is so small beside the outputs it is the difference of that rounding hides "
+             "it; lengthen the time or take another cutoff or order.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";
 }

@@ -14,9 +14,7 @@ double larger(double a, double b) noexcept { return a > b ? a : b; }
 double smaller(double a, double b) noexcept { return a < b ? a : b; }
 
 /// What the cell widths at both ends are multiples of: 1 us for a sensor of 4 kHz.
-double width_unit_s(const ModalModel& model) noexcept {
-  return 0.004 / larger(model.device().natural_frequency_hz, model.filter().cutoff_hz);
-}
+double width_unit_s(const ModalModel& model) noexcept { return 0.004 / model.grid_hz(); }
 
 /// The width of the cell that starts `before_s` before T, for cells of `width_s` elsewhere.
 double width_before_end_s(double before_s, double unit_s, double width_s) noexcept {
@@ -103,8 +101,7 @@ double shortest_run_s(const ModalModel& model, const KernelBounds& bounds, doubl
 }  // namespace
 
 std::size_t coarsest_certificate(const ModalModel& model, double duration_s) noexcept {
-  const double wanted =
-      10.0 * duration_s * larger(model.device().natural_frequency_hz, model.filter().cutoff_hz);
+  const double wanted = 10.0 * duration_s * model.grid_hz();
   const double most = static_cast<double>(kMaxCertificateCells + 1);
   const auto cells = static_cast<std::size_t>(wanted < most ? wanted + 1.0 : most);
   return cells > kMinCertificateCells ? cells : kMinCertificateCells;
@@ -125,8 +122,7 @@ Status lay_out_cells(const ModalModel& model, double duration_s, std::size_t wan
 void fill_costs(const ModalModel& model, const KernelBounds& bounds, double margin,
                 CertificateGrid& grid) noexcept {
   const double duration_s = grid.edges_s[grid.cells];
-  const double longest_s =
-      0.5 / larger(model.device().natural_frequency_hz, model.filter().cutoff_hz);
+  const double longest_s = 0.5 / model.grid_hz();
   const double run_margin = 1.0 + kRunMargins * (margin - 1.0);
   grid.free_from = grid.cells;
   for (std::size_t edge = grid.cells - 1; edge >= 1; --edge) {

@@ -8,6 +8,8 @@
 #include "emax/base/float_root.hpp"
 #include "emax/base/units.hpp"
 #include "emax/base/wichmann_hill.hpp"
+#include "emax/bound/response_sizes.hpp"
+#include "emax/energy/known_energy.hpp"
 #include "emax/energy/phi_operator.hpp"
 
 namespace emax {
@@ -20,10 +22,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 0x1p-47;
 /// By how much d is lowered so that the rounding of a vector counts only by its square.
 constexpr double kSlack = 1e-9;
+/// More than the rounding of a few operations.
+constexpr double kRoundedUp = 1.0 + 0x1p-48;
 
 /// What the rounding of poles, residues and the integral of d may add to the bound, as part of T
 /// (max |Ka| + max |Kf|)^2.
 constexpr double kModelRounding = 1e-10;
+/// The same for the in-band error, as part of T (integral of sum |r e^(p t)|)^2: k is off by less
+/// than 4e-14 of its terms, and E by twice that.
+constexpr double kTermRounding = 1e-13;
 
 /// Gauss-Legendre with 8 nodes: exact to 1e-18 for products of exponentials with |p| tau below 1.
 struct Node {
@@ -155,10 +162,19 @@ void DissipationCheck::fill_inputs(const ModalModel& model) noexcept {
 }
 
 void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
+  if (criterion_ == Criterion::kInBandError) {
+    // K v = k(0) Q' + k'(0) Q + the convolution of k'' and Q; v = (Q')' with Q' of mean zero.
+    const ResponseSizes sizes = response_sizes(model, duration_s_);
+    remainder_ = sizes.start * step_s_ / kTwoPi +
+                 step_s_ * step_s_ / kClampedBeam * (sizes.slope + sizes.curvature);
+    mixed_remainder_ = 0.0;
+    model_rounding_ = kTermRounding * duration_s_ * sizes.terms * sizes.terms;
+    return;
+  }
   const Accelerometer& device = model.device();
-  const Butterworth& filter = model.filter();
+  const ReferenceFilter& filter = model.filter();
   const double w0 = kTwoPi * device.natural_frequency_hz;
-  const double wc = kTwoPi * filter.cutoff_hz;
+  const double wc = kTwoPi * filter.band_hz;
   const double b = device.damping;
   // |Ka| and |s^2 Ka|/w0^2 have the same maximum over frequency; within T neither can amplify by
   // more than 1 plus the integral of the envelope of its impulse response.
@@ -173,7 +189,7 @@ void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
   // Of order 1 the filter passes s^2 K no more, but s K: w = W' with W of mean zero, |W| <= (tau/(2
   // pi)) |w|. From order 2 on |s^2 Kf| <= gain wc^2.
   const double filter_remainder =
-      filter.gain * (filter.order == 1 ? wc * step_s_ / kTwoPi : beam * wc * wc);
+      filter.gain * (filter.relative_degree == 1 ? wc * step_s_ / kTwoPi : beam * wc * wc);
   if (criterion_ == Criterion::kIntegralSquareError) {
     remainder_ = device_remainder + filter_remainder;
     mixed_remainder_ = 0.0;
@@ -281,7 +297,7 @@ bool DissipationCheck::step_back(double d) noexcept {
 double DissipationCheck::completed(double integral, double least) const noexcept {
   const double proven = integral + model_rounding_;
   const double remainder2 = remainder_ * remainder_;
-  if (criterion_ == Criterion::kIntegralSquareError) {
+  if (criterion_ != Criterion::kEnergyDifference) {
     return least > 0.0 ? proven + integral * remainder2 / least : kInfinity;
   }
   const double room = least - remainder2;
@@ -290,15 +306,25 @@ double DissipationCheck::completed(double integral, double least) const noexcept
 
 Status EnergyBound::start(const ModalModel& model, double duration_s,
                           GridWorkspace& workspace) noexcept {
-  if (!(duration_s > 0.0) || !is_finite(duration_s)) {
+  if (!(duration_s > 0.0) || !is_finite(duration_s) || model.feedthrough() != 0.0) {
     return Status::kInvalidArgument;
   }
   const std::size_t grid = grid_cells(model, duration_s);
   if (grid > kMaxCells) {
     return Status::kTooManyCells;
   }
+  const OneSidedResponse constant = one_sided_response(model, duration_s);
+  if (constant.holds) {
+    const double energy = (constant.energy.energy + constant.energy.rounding) * kRoundedUp;
+    // Of the sensor itself; only a delay is still to come.
+    const double root = sqrt(energy) + delay_tolerance(model) * sqrt(duration_s);
+    bound_ = delay_tolerance(model) > 0.0 ? root * root : energy;
+    steps_ = 0;
+    phase_ = Phase::kDone;
+    return Status::kOk;
+  }
   steps_ = grid * (grid > kLongGrid ? kStepsPerCellOfLongGrid : kStepsPerCell) *
-           (model.filter().order == 1 ? kMoreStepsForOrder1 : 1);
+           (model.filter().relative_degree == 1 ? kMoreStepsForOrder1 : 1);
   cells_ = smaller(kProposalCellsPerCell * grid, kMaxProposalCells);
   count_of_modes_ = model.modes().size();
   duration_s_ = duration_s;
@@ -533,7 +559,7 @@ void EnergyBound::check_steps(Span<const float> d) noexcept {
   }
 }
 
-Status EnergyBound::step(const ModalModel& /*model*/, GridWorkspace& workspace) noexcept {
+Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noexcept {
   switch (phase_) {
     case Phase::kFirstVectors:
       fill_vector(workspace);
@@ -555,7 +581,13 @@ Status EnergyBound::step(const ModalModel& /*model*/, GridWorkspace& workspace) 
     case Phase::kDone:
       return Status::kOk;
   }
-  return done() && !(bound_ < kInfinity) ? Status::kNotProven : Status::kOk;
+  if (!done()) {
+    return Status::kOk;
+  }
+  if (bound_ < kInfinity) {
+    bound_ = true_bound(model, bound_, duration_s_);
+  }
+  return bound_ < kInfinity ? Status::kOk : Status::kNotProven;
 }
 
 }  // namespace emax

@@ -3,6 +3,8 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/energy/known_energy.hpp"
+#include "emax/energy/switching_signal.hpp"
 
 namespace emax {
 namespace {
@@ -12,6 +14,8 @@ constexpr double kMeshResolution = 40.0;
 constexpr std::size_t kFineIntervals = 4000;
 constexpr double kRounding = 1.0 + 1e-9;
 constexpr std::size_t kRowsPerStep = 16;
+/// Of the energy of the constant signal, which is no more than the greatest one.
+constexpr double kLeastDigits = 1e-6;
 
 double fastest_rate(const ModalModel& model) noexcept {
   double fastest = 0.0;
@@ -106,10 +110,11 @@ double pulse_energy(const ModalModel& model, double left_s, double width_s) noex
 
 Status KernelBounds::start(const ModalModel& model, double duration_s,
                            Span<double> numbers) noexcept {
-  if (!(duration_s > 0.0) || model.criterion() != Criterion::kIntegralSquareError) {
+  const bool is_exact = model.delay_s() == 0.0 && model.moved_by() == 0.0 && !model.is_nothing();
+  if (!(duration_s > 0.0) || !model.is_square() || model.feedthrough() != 0.0 || !is_exact) {
     return Status::kInvalidArgument;
   }
-  if (model.filter().order < 2) {
+  if (model.filter().relative_degree < 2) {
     return Status::kInvalidOrder;
   }
   const std::size_t intervals = mesh_intervals(model, duration_s);
@@ -127,7 +132,7 @@ Status KernelBounds::start(const ModalModel& model, double duration_s,
   next_row_ = 0;
   fill_tables(numbers);
   fill_norms();
-  return Status::kOk;
+  return has_digits() ? Status::kOk : Status::kLostDigits;
 }
 
 void KernelBounds::fill_tables(Span<double> numbers) noexcept {
@@ -168,6 +173,18 @@ void KernelBounds::fill_tables(Span<double> numbers) noexcept {
     impulse_[point] = impulse;
     impulse_slope_[point] = slope;
   }
+}
+
+/// Whether the norms of k are more than what their sums round off, and the constant signal's energy
+/// much more: Phi is a difference of the same sums.
+bool KernelBounds::has_digits() const noexcept {
+  for (const double norm : norms_) {
+    if (!(norm > 0.0) || !is_finite(norm)) {
+      return false;
+    }
+  }
+  const double found = energy(*model_, Span<const double>(), duration_s_);
+  return energy_rounding(*model_, duration_s_, 0, found) <= kLeastDigits * found;
 }
 
 // With L_n the integral of |k^(n)| over [0, T], at most sqrt(T) times its norm, the derivatives of

@@ -5,6 +5,7 @@
 
 #include "emax/base/elementary.hpp"
 #include "emax/base/wichmann_hill.hpp"
+#include "emax/energy/known_energy.hpp"
 #include "emax/energy/refinement.hpp"
 
 namespace emax {
@@ -39,6 +40,8 @@ constexpr std::size_t kTableStretch = 256;
 constexpr std::size_t kWorkOfTables = 192;
 /// What a cell of a product in double precision costs where it is not in hardware.
 constexpr std::size_t kSinglesPerDouble = 32;
+/// Rounding of more than this part of the energy may have led the search astray.
+constexpr double kTrusted = 1e-4;
 constexpr std::uint32_t kRandomSeed[] = {1, 2, 3, 4};
 /// What each pattern may take of them, whatever the capacity, so that it changes no pattern.
 constexpr std::uint64_t kNumbersPerPattern = 8192;
@@ -94,6 +97,7 @@ class SignAt {
 
 void clear(MaximumEnergy& maximum) noexcept {
   maximum.energy = 0.0;
+  maximum.rounding = 0.0;
   maximum.signal.clear();
   maximum.cells = 0;
   maximum.starts = 0;
@@ -102,10 +106,11 @@ void clear(MaximumEnergy& maximum) noexcept {
 }
 
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
-  const double f0 = model.device().natural_frequency_hz;
-  const bool difference = model.criterion() == Criterion::kEnergyDifference;
-  const double fc = (difference ? kFinerForDifference : 1.0) * model.filter().cutoff_hz;
-  const std::size_t cells = cells_for(duration_s, 1.0 / (kCellsPerPeriod * (f0 > fc ? f0 : fc)));
+  const bool is_difference = model.criterion() == Criterion::kEnergyDifference;
+  const double band_hz = is_difference ? kFinerForDifference * model.filter().band_hz : 0.0;
+  const double grid_hz = model.grid_hz();
+  const std::size_t cells =
+      cells_for(duration_s, 1.0 / (kCellsPerPeriod * (grid_hz > band_hz ? grid_hz : band_hz)));
   return cells < kMinCells ? kMinCells : cells;
 }
 
@@ -116,7 +121,7 @@ std::size_t search_cells(const ModalModel& model, const SearchSettings& settings
 
 double ascent_shift(const ModalModel& model, double cell_s) noexcept {
   const double gain = model.filter().gain;
-  return model.criterion() == Criterion::kEnergyDifference ? gain * gain * cell_s : 0.0;
+  return model.is_square() ? 0.0 : gain * gain * cell_s;
 }
 
 void PulseTurn::start() noexcept {
@@ -202,9 +207,51 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   modes_ = model.modes().size();
   phase_ = paper ? Phase::kPaperStart : Phase::kStart;
   has_result_ = false;
+  is_lost_ = false;
+  rounding_ = model.is_square() ? energy_rounding(model, settings.duration_s, 0, 0.0) : 0.0;
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
-  shortest_half_period_s_ = 0.5 / model.device().natural_frequency_hz;
-  return Status::kOk;
+  const double f0 = model.device().natural_frequency_hz;
+  shortest_half_period_s_ = 0.5 / (f0 > 0.0 ? f0 : model.filter().band_hz);
+  return look_at_one_sided(model);
+}
+
+/// Ends the search if the constant signal is known to be the best one.
+Status EnergySearch::look_at_one_sided(const ModalModel& model) noexcept {
+  const OneSidedResponse constant = one_sided_response(model, settings_.duration_s);
+  if (!constant.holds) {
+    return Status::kOk;
+  }
+  const KnownEnergy& known = constant.energy;
+  climbs_ = 0;
+  if (!(known.rounding <= kPermittedRounding * known.energy)) {
+    return Status::kLostDigits;
+  }
+  has_result_ = true;
+  result_.energy = known.energy;
+  result_.rounding = known.rounding;
+  result_.at_rest = true;
+  // Cannot fail: no times.
+  (void)result_.signal.set(Span<const double>(), settings_.duration_s);
+  return check_delay(model, known.energy, settings_.duration_s);
+}
+
+/// How far the result is known; where the closed form loses digits, by another form.
+Status EnergySearch::finish(const ModalModel& model) noexcept {
+  result_.rounding =
+      energy_rounding(model, settings_.duration_s, result_.signal.count(), result_.energy);
+  const double size = abs(result_.energy);
+  if (!(result_.rounding <= kTrusted * size)) {
+    return Status::kLostDigits;
+  }
+  if (model.moved_by() > 0.0 || !(result_.rounding <= kPermittedRounding * size)) {
+    const EnergyAnswer answer = known_energy(model, result_.signal);
+    if (answer.status != Status::kOk) {
+      return answer.status;
+    }
+    result_.energy = answer.known.energy;
+    result_.rounding = answer.known.rounding;
+  }
+  return check_delay(model, result_.energy, settings_.duration_s);
 }
 
 double EnergySearch::progress() const noexcept {
@@ -213,7 +260,6 @@ double EnergySearch::progress() const noexcept {
 
 Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
                           Span<double> trace) noexcept {
-  has_refined_ = false;
   has_refined_ = false;
   if (done()) {
     return Status::kOk;
@@ -233,7 +279,13 @@ Status EnergySearch::step(const ModalModel& model, GridWorkspace& workspace,
   // A signal with more switches than the table holds must not be passed over in silence if it beats
   // all others.
   const bool lost = !has_result_ || unstorable_energy_ > result_.energy;
-  return done() && lost ? Status::kTooManySwitches : Status::kOk;
+  if (!done()) {
+    return Status::kOk;
+  }
+  if (is_lost_) {
+    return Status::kLostDigits;
+  }
+  return lost ? Status::kTooManySwitches : finish(model);
 }
 
 /// @returns What it has cost, in cells of a product.
@@ -496,6 +548,7 @@ void EnergySearch::end_fixed_point(std::size_t room) noexcept {
   const FixedPointResult& run = fixed_point_.result();
   trace_count_ = run.iterations + 1 < room ? run.iterations + 1 : room;
   climb_energy_ = run.energy;
+  end_if_lost();
   if (turns_ == 0) {
     iterations_ = run.iterations;
     at_rest_ = run.at_rest;
@@ -525,11 +578,24 @@ std::size_t EnergySearch::step_turn(const PhiOperator& phi, const ModalModel& mo
   return work;
 }
 
+/// A first climb that sees nothing but rounding ends the search: no later one finds thousands of
+/// times as much.
+void EnergySearch::end_if_lost() noexcept {
+  if (rounding_ > 0.0 && !(climb_energy_ > rounding_)) {
+    is_lost_ = true;
+    climbs_made_ = climbs_;
+  }
+}
+
 void EnergySearch::end_grid_climb(GridWorkspace& workspace) noexcept {
   end_ = {static_cast<float>(grid_climb_.energy()), mark(workspace.signs(cells_))};
   climb_energy_ = float_phi_.scale() * grid_climb_.energy();
   iterations_ = grid_climb_.iterations();
   at_rest_ = grid_climb_.at_rest();
+  end_if_lost();
+  if (is_lost_) {
+    return;
+  }
   SwitchingSignal& candidate = workspace.signal();
   if (candidate.set_signs(workspace.signs(cells_), settings_.duration_s) != Status::kOk) {
     unstorable_energy_ = climb_energy_ > unstorable_energy_ ? climb_energy_ : unstorable_energy_;

@@ -38,11 +38,16 @@ Status PhiOperator::set(const ModalModel& model, double duration_s, std::size_t 
       diagonal_limit_ = endless_diagonal_;
     }
   }
+  if (model.feedthrough() != 0.0) {
+    const double at_once = h * model.feedthrough() * model.feedthrough();
+    endless_diagonal_ += at_once;
+    diagonal_limit_ += at_once;
+  }
   // Without a second mode the last one is taken together with one that is nothing.
   step_[count_] = {};
   end_[count_] = {};
   correlation_[count_] = {};
-  const bool square = model.criterion() == Criterion::kIntegralSquareError;
+  const bool square = model.is_square();
   if (square) {
     diagonal_limit_ = endless_diagonal_;
   }

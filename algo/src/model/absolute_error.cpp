@@ -3,6 +3,7 @@
 
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
+#include "emax/model/cascade_response.hpp"
 
 namespace emax {
 namespace {
@@ -18,6 +19,25 @@ double samples_for(const ModalModel& model, double duration_s) noexcept {
     fastest = rate > fastest ? rate : fastest;
   }
   return floor(kSamplesPerPeriod / kTwoPi * sqrt(fastest) * duration_s) + 1.0;
+}
+
+/// By how much rounding may move a step response.
+double step_rounding(const ModalModel& model) noexcept {
+  double sum = abs(model.static_gain());
+  for (std::size_t i = 0; i < model.modes().size(); ++i) {
+    sum += sqrt(norm(model.modes()[i].residue) * norm(model.inverse_pole(i)));
+  }
+  return 8.0 * 0x1p-53 * sum;
+}
+
+/// The step response of the sensor itself, also where the modes are those of a neighbour.
+double step_response(const ModalModel& model, double time_s) noexcept {
+  CascadeResponse response;
+  if (model.moved_by() == 0.0 || !response.start(model, time_s)) {
+    return model.step_response(time_s);
+  }
+  response.advance(time_s, 1.0);
+  return response.output();
 }
 
 /// Where k has its zero between two times at which its signs differ, to neighbouring doubles.
@@ -47,17 +67,27 @@ Status AbsoluteError::start(const ModalModel& model, double duration_s) noexcept
   }
   duration_s_ = duration_s;
   samples_ = samples;
-  // k(0) may be 0: the first sign is that of the first sample.
-  last_s_ = duration_s / samples;
+  const OneSidedResponse constant = one_sided_response(model, duration_s);
+  if (constant.holds) {
+    value_ = constant.output;
+    rounding_ = constant.output_rounding;
+    return Status::kOk;
+  }
+  last_step_ = model.feedthrough();  // Just after 0.
+  // If k(0) is 0 the first sign is that of the first sample.
+  next_ = 1;
+  if (model.starts_at_zero()) {
+    last_s_ = duration_s / samples;
+    next_ = 2;
+  }
   positive_ = model.impulse_response(last_s_) > 0.0;
-  next_ = 2;
   running_ = true;
   return Status::kOk;
 }
 
 void AbsoluteError::take_zero(const ModalModel& model, double zero_s,
                               Span<double> zeros_s) noexcept {
-  const double step = model.step_response(zero_s);
+  const double step = step_response(model, zero_s);
   value_ += abs(step - last_step_);
   last_step_ = step;
   if (zeros_ < zeros_s.size()) {
@@ -78,7 +108,9 @@ void AbsoluteError::step(const ModalModel& model, Span<double> zeros_s) noexcept
     last_s_ = time_s;
   }
   if (running_ && next_ > last) {
-    value_ += abs(model.step_response(duration_s_) - last_step_);
+    value_ += abs(step_response(model, duration_s_) - last_step_);
+    value_ += abs(model.feedthrough());
+    rounding_ = static_cast<double>(2 * zeros_ + 1) * step_rounding(model);
     running_ = false;
   }
 }

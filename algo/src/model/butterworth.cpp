@@ -41,9 +41,12 @@ double amplitude(const Butterworth& filter, double frequency_hz) noexcept {
   return filter.gain / sqrt(1.0 + power);
 }
 
-FilterModes modes_of(const Butterworth& filter) noexcept {
+ReferenceFilter butterworth(const Butterworth& filter) noexcept {
   const double wc = kTwoPi * filter.cutoff_hz;
-  FilterModes result;
+  ReferenceFilter result;
+  result.relative_degree = filter.order;
+  result.gain = filter.gain;
+  result.band_hz = filter.cutoff_hz;
   // The poles with index up to (order + 1) / 2 have no negative imaginary part; the others are
   // their conjugates.
   for (int i = 1; 2 * i <= filter.order + 1; ++i) {

@@ -3,10 +3,19 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+#include "emax/model/in_band.hpp"
 #include "emax/model/response_scan.hpp"
 
 namespace emax {
 namespace {
+
+/// Modes closer than this are the same: some roundings of poles and residues.
+constexpr double kSameMode = 0x1p-48;
+
+bool is_same(Complex a, Complex b) noexcept {
+  return norm(a - b) <= kSameMode * kSameMode * norm(a);
+}
 
 /// Re sum residue * e^(pole t).
 double response(Span<const Mode> modes, double time_s) noexcept {
@@ -29,19 +38,56 @@ Status ModalModel::set(const Accelerometer& device, const Butterworth& filter,
   if (filter_status != Status::kOk) {
     return filter_status;
   }
+  return set(device, butterworth(filter), ErrorMeasure{criterion});
+}
+
+Status ModalModel::set(const Accelerometer& device, const ReferenceFilter& filter,
+                       const ErrorMeasure& measure) noexcept {
+  const Status status = validate(device);
+  const bool is_in_band = measure.criterion == Criterion::kInBandError;
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (is_in_band && !(filter.gain > 0.0)) {
+    return Status::kInvalidArgument;
+  }
+  double delay_s = 0.0;
+  if (is_in_band && measure.delay.mode != DelayMode::kNone) {
+    const double of_sensor_s = 2.0 * device.damping / (kTwoPi * device.natural_frequency_hz);
+    delay_s = measure.delay.mode == DelayMode::kGiven ? measure.delay.given_s : of_sensor_s;
+  }
+  if (!(delay_s >= 0.0) || !(delay_s * (kTwoPi * filter.band_hz) <= 1.0)) {
+    return Status::kDelayTooLong;
+  }
+  delay_s_ = delay_s;
+  delay_reach_ = delay_s > 0.0 ? reach_before_start(filter, delay_s) : 0.0;
+  delay_error_ = abs(delay_reach_);
+  feedthrough_ = 0.0;
+  take(device, filter, measure.criterion);
+  return Status::kOk;
+}
+
+Status ModalModel::set_ideal(double sensitivity, const ReferenceFilter& filter,
+                             Criterion criterion) noexcept {
+  const bool is_in_band = criterion == Criterion::kInBandError;
+  if (!(sensitivity > 0.0) || !is_finite(sensitivity) || (is_in_band && !(filter.gain > 0.0))) {
+    return Status::kInvalidArgument;
+  }
+  delay_s_ = 0.0;
+  delay_reach_ = 0.0;
+  delay_error_ = 0.0;
+  feedthrough_ = is_in_band ? 0.0 : sensitivity;
+  take(Accelerometer{sensitivity, 0.0, 0.0}, filter, criterion);
+  return Status::kOk;
+}
+
+void ModalModel::take(const Accelerometer& device, const ReferenceFilter& filter,
+                      Criterion criterion) noexcept {
   device_ = device;
   filter_ = filter;
   criterion_ = criterion;
-  const FilterModes filter_modes = modes_of(filter);
-  modes_[0] = mode_of(device);
-  for (std::size_t i = 0; i < filter_modes.count; ++i) {
-    modes_[1 + i] = {filter_modes.modes[i].pole, -filter_modes.modes[i].residue};
-  }
-  count_ = 1 + filter_modes.count;
-  fill_gramians(count_);
-  fill_sums_over_filter();
-  fill_switch_weights();
-  return Status::kOk;
+  count_ = 1 + filter.count;
+  fill_modes();
 }
 
 Status ModalModel::set_device(const Accelerometer& device) noexcept {
@@ -49,28 +95,105 @@ Status ModalModel::set_device(const Accelerometer& device) noexcept {
   if (status != Status::kOk) {
     return status;
   }
+  const bool is_in_band = criterion_ == Criterion::kInBandError;
+  const bool was_nothing = is_nothing_;
   device_ = device;
-  modes_[0] = mode_of(device);
+  feedthrough_ = 0.0;
+  fill_residues();
   fill_gramians(1);
+  if (is_in_band || is_nothing_ != was_nothing) {
+    fill_sums_over_filter();
+  }
   fill_switch_weights();
   return Status::kOk;
 }
 
 Status ModalModel::set_gain(double gain) noexcept {
-  Butterworth filter = filter_;
-  filter.gain = gain;
-  const Status status = validate(filter);
-  if (status != Status::kOk) {
-    return status;
+  if (!(gain >= 0.0) || !is_finite(gain) || (filter_.gain == 0.0 && gain > 0.0)) {
+    return Status::kInvalidArgument;
   }
-  filter_ = filter;
-  const FilterModes filter_modes = modes_of(filter);
-  for (std::size_t i = 0; i < filter_modes.count; ++i) {
-    modes_[1 + i].residue = -filter_modes.modes[i].residue;
+  if (gain == filter_.gain) {
+    return Status::kOk;
   }
+  const double ratio = gain / filter_.gain;
+  for (Mode& mode : filter_.modes) {
+    mode.residue = ratio * mode.residue;
+  }
+  filter_.gain = gain;
+  fill_modes();
+  return Status::kOk;
+}
+
+double ModalModel::grid_hz() const noexcept {
+  constexpr double kInBand[] = {0.5, 0.7, 0.85, 1.0};
+  constexpr double kOfResonance = 0.1;
+  constexpr double kBands = 4.0;
+  constexpr double kCoarsest = 1.0 / 16.0;
+  const double f0 = device_.natural_frequency_hz;
+  const double band = filter_.band_hz;
+  if (criterion_ != Criterion::kInBandError || !(f0 > kBands * band)) {
+    return f0 > band ? f0 : band;
+  }
+  double in_band = 0.0;
+  for (const double part : kInBand) {
+    const double size = in_band_amplitude(device_, filter_, delay_s_, part * band);
+    in_band = size > in_band ? size : in_band;
+  }
+  if (in_band_amplitude(device_, filter_, delay_s_, f0) > kOfResonance * in_band) {
+    return f0;
+  }
+  return kBands * band > kCoarsest * f0 ? kBands * band : kCoarsest * f0;
+}
+
+/// Poles and residues of k, and what a constant input settles at.
+void ModalModel::fill_residues() noexcept {
+  const bool is_ideal = device_.natural_frequency_hz == 0.0;
+  const double offset = device_.sensitivity - filter_.gain;
+  is_nothing_ = false;
+  moved_by_ = 0.0;
+  static_gain_ = offset;
+  if (is_ideal) {
+    modes_[0] = {{-kTwoPi * filter_.band_hz, 0.0}, {}};
+  } else {
+    modes_[0] = mode_of(device_);
+  }
+  if (criterion_ != Criterion::kInBandError) {
+    for (std::size_t i = 0; i < filter_.count; ++i) {
+      modes_[1 + i] = {filter_.modes[i].pole, -filter_.modes[i].residue};
+    }
+    is_nothing_ = !is_ideal && count_ == 2 && is_same(modes_[0].pole, modes_[1].pole) &&
+                  is_same(modes_[0].residue, -modes_[1].residue);
+  } else if (is_ideal) {
+    for (std::size_t i = 0; i < filter_.count; ++i) {
+      const Mode& mode = filter_.modes[i];
+      modes_[1 + i] = {mode.pole, (offset / filter_.gain) * mode.residue};
+    }
+    is_nothing_ = offset == 0.0;
+  } else {
+    static_gain_ = offset - filter_.gain * delay_reach_;
+    const Accelerometer device = with_simple_poles(device_, filter_);
+    if (device.natural_frequency_hz != device_.natural_frequency_hz) {
+      moved_by_ = change_by_move(device_);
+    }
+    modes_[0] = {mode_of(device).pole, in_band_residue(device, filter_)};
+    for (std::size_t i = 0; i < filter_.count; ++i) {
+      const Mode& mode = filter_.modes[i];
+      modes_[1 + i] = {mode.pole, in_band_residue(device, filter_, mode, delay_s_)};
+    }
+  }
+  if (is_nothing_) {
+    static_gain_ = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      modes_[i].residue = {};
+    }
+  }
+}
+
+void ModalModel::fill_modes() noexcept {
+  fill_residues();
+  fill_gramians(count_);
   fill_sums_over_filter();
   fill_switch_weights();
-  return Status::kOk;
 }
 
 void ModalModel::fill_gramians(std::size_t first_row_count) noexcept {
@@ -125,7 +248,9 @@ Complex ModalModel::correlation(std::size_t i) const noexcept {
   }
   kernel = kernel + gramian(i, 0) * modes_[0].residue +
            conjugate_gramian(i, 0) * conj(modes_[0].residue);
-  return -0.5 * (modes_[i].residue * kernel);
+  const Complex sum = -0.5 * (modes_[i].residue * kernel);
+  // What passes at once correlates with the output of the modes; only within one output.
+  return is_square() && feedthrough_ != 0.0 ? sum + feedthrough_ * modes_[i].residue : sum;
 }
 
 void ModalModel::fill_sums_over_filter() noexcept {
@@ -155,8 +280,8 @@ void ModalModel::fill_switch_weights() noexcept {
   }
   // What a constant unit input ends up as in the output that a mode is part of: y for the
   // integral-square error, ya or minus yf, each with its own sign, for the energy difference.
-  const double sum = device_.sensitivity + filter_.gain;
-  const double difference = device_.sensitivity - filter_.gain;
+  const double sum = is_nothing_ ? 0.0 : device_.sensitivity + filter_.gain;
+  const double difference = static_gain_;
   const bool is_difference = criterion_ == Criterion::kEnergyDifference;
   static_power_ = difference * (is_difference ? sum : difference);
   for (std::size_t i = 0; i < count_; ++i) {
@@ -171,18 +296,22 @@ double ModalModel::impulse_response(double time_s) const noexcept {
 }
 
 double ModalModel::device_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : response(modes().first(1), time_s);
+  if (time_s < 0.0) {
+    return 0.0;
+  }
+  const Mode mode = device_.natural_frequency_hz > 0.0 ? mode_of(device_) : Mode{};
+  return response(Span<const Mode>(&mode, 1), time_s);
 }
 
 double ModalModel::filter_impulse_response(double time_s) const noexcept {
-  return time_s < 0.0 ? 0.0 : -response(modes().from(1), time_s);
+  return time_s < 0.0 ? 0.0 : response(filter_.terms(), time_s);
 }
 
 double ModalModel::step_response(double time_s) const noexcept {
   if (!(time_s > 0.0)) {
     return 0.0;
   }
-  double sum = device_.sensitivity - filter_.gain;
+  double sum = static_gain_;
   for (std::size_t i = 0; i < count_; ++i) {
     sum += real_of_product(settled_[i], exp(time_s * modes_[i].pole));
   }

@@ -61,7 +61,8 @@ ResponseScan begin(const ModalModel& model) noexcept {
   ResponseScan scan;
   scan.step_s = sample_step_s(model.modes());
   scan.slope = slope_of(model.modes(), 0.0);
-  scan.running = true;
+  scan.running = !model.is_nothing();
+  scan.complete = model.is_nothing();
   return scan;
 }
 

@@ -29,14 +29,16 @@ void write_list(const char* name, Span<const double> values, TextWriter& out) no
 
 void write_about(const ProvenEnergy& proven, TextWriter& out) noexcept {
   const Accelerometer& device = proven.model->device();
-  const Butterworth& filter = proven.model->filter();
+  const ReferenceFilter& filter = proven.model->filter();
   out.text(" \"certificate\": 1,\n \"version\": \"").text(app::kVersion).text("\",\n");
   out.text(" \"model\": {\"S\": ").exact(device.sensitivity);
   out.text(", \"f0\": ").exact(device.natural_frequency_hz);
   out.text(", \"beta\": ").exact(device.damping);
-  out.text(", \"order\": ").integer(static_cast<std::uint64_t>(filter.order));
-  out.text(", \"cutoff\": ").exact(filter.cutoff_hz);
-  out.text(", \"gain\": ").exact(filter.gain).text("},\n");
+  out.text(", \"order\": ").integer(static_cast<std::uint64_t>(filter.relative_degree));
+  out.text(", \"cutoff\": ").exact(filter.band_hz);
+  out.text(", \"gain\": ").exact(filter.gain);
+  const bool is_in_band = proven.model->criterion() == Criterion::kInBandError;
+  out.text(is_in_band ? ", \"criterion\": \"band\"},\n" : "},\n");
   out.text(" \"signal\": {\"T\": ").exact(proven.signal->duration_s());
   out.text(", \"a\": ").exact(proven.limit_mps2).text("},\n");
   out.text(" \"energy\": {\"E\": ").exact(proven.energy_v2s).text(", \"switch_times\": [");

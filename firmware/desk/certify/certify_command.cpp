@@ -19,6 +19,7 @@
 #include "emax/base/decimal.hpp"
 #include "emax/bound/energy_certificate.hpp"
 #include "emax/identify/frequency_response.hpp"
+#include "emax/model/cascade_response.hpp"
 
 #include "desk/certify/certificate_file.hpp"
 #include "desk/cli/console.hpp"
@@ -321,13 +322,14 @@ void write_text(const Result& result, app::TextWriter& out) {
   const ProvenEnergy& proven = result.proven;
   const EnergyCertificate& certificate = *proven.certificate;
   const Accelerometer& device = proven.model->device();
-  const Butterworth& filter = proven.model->filter();
+  const ReferenceFilter& filter = proven.model->filter();
   const std::size_t switches = proven.signal->count();
   const double duration_s = proven.signal->duration_s();
   out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
   out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
-  out.text("\nFilter      Butterworth, order ").integer(static_cast<std::uint64_t>(filter.order));
-  out.text(", cutoff ").general(filter.cutoff_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
+  out.text("\nFilter      Butterworth, order ")
+      .integer(static_cast<std::uint64_t>(filter.relative_degree));
+  out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
   out.text(" V/(m/s^2)\nSignals     of any shape within +-").general(proven.limit_mps2, 7);
   out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n\n");
   out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");
@@ -365,6 +367,16 @@ Problem run_certify(Span<const std::string_view> arguments) {
     return problem;
   }
   const ModalModel model = evaluation.model;
+  if (model.is_nothing()) {
+    return bad_input(
+        "--model: the sensor is the filter, so the error is 0 and nothing is left to prove; "
+        "expected another sensor or filter");
+  }
+  if (one_sided_response(model, evaluation.maximum.signal.duration_s()).holds) {
+    return bad_input(
+        "--time: the impulse response has one sign within T, so the constant signal is the worst "
+        "one and nothing is left to prove; expected a longer time, or emax report");
+  }
   Work work;
   problem = work.start(model, evaluation.maximum.signal.duration_s(), options.effort_s);
   if (problem ||

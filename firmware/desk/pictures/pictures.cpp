@@ -48,11 +48,11 @@ std::string parameters_of(const EvaluationResults& results) {
 }
 
 std::string filter_of(const EvaluationResults& results) {
-  const Butterworth& filter = results.model.filter();
+  const ReferenceFilter& filter = results.model.filter();
   return words_of([&](TextWriter& out) {
     out.text("reference filter: Butterworth, order ");
-    out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
-    out.general(filter.cutoff_hz, 6).text(" Hz, gain ").general(filter.gain, 5);
+    out.integer(static_cast<std::uint64_t>(filter.relative_degree)).text(", cutoff ");
+    out.general(filter.band_hz, 6).text(" Hz, gain ").general(filter.gain, 5);
     out.text(" V/(m/s²)");
   });
 }
@@ -329,7 +329,7 @@ double end_of_table_s(const EvaluationResults& results) {
 }
 
 double fastest_hz(const EvaluationResults& results) {
-  return std::max(results.device.estimate.natural_frequency_hz, results.model.filter().cutoff_hz);
+  return std::max(results.device.estimate.natural_frequency_hz, results.model.filter().band_hz);
 }
 
 // Of the time after the device has settled only a part is shown.

@@ -100,6 +100,59 @@ TEST(AbsoluteError, OfALoneSensorIsTheSumOfItsOvershoots) {
   EXPECT_NEAR(largest_absolute_error(model, 25e-3).value, expected, 1e-13 * expected);
 }
 
+TEST(AbsoluteError, SeesAZeroBeforeItsFirstSample) {
+  // k(0) = -g wc for order 1; found outside this code by a dense scan.
+  ModalModel model{};
+  ASSERT_EQ(model.set({1.0, 10858.8, 0.364}, {1, 1000.0, 0.9}, kIse), Status::kOk);
+  const LargestError error = largest_absolute_error(model, 3.524e-3);
+  EXPECT_NEAR(error.value, 2.0535961, 0.5e-7);
+}
+
+TEST(AbsoluteError, OfAShortTimeKeepsItsDigits) {
+  // y(T) = S (w0 T)^2/2 less about b w0 T of it.
+  const double w0_t = 2.0 * std::acos(-1.0) * 4073.0 * 1e-9;
+  ModalModel model{};
+  ASSERT_EQ(model.set(kPaperDevice, {15, 1000.0, 1.037}, kIse), Status::kOk);
+  AbsoluteError error{};
+  ASSERT_EQ(error.start(model, 1e-9), Status::kOk);
+  ASSERT_TRUE(error.done());
+  EXPECT_EQ(error.status(), Status::kOk);
+  EXPECT_EQ(error.zeros(), 0u);
+  EXPECT_NEAR(error.value(), 1.037 * 0.5 * w0_t * w0_t, 1e-4 * error.value());
+}
+
+TEST(AbsoluteError, KnowsItsRounding) {
+  const ModalModel model = paper_model();
+  AbsoluteError error{};
+  ASSERT_EQ(error.start(model, 2e-3), Status::kOk);
+  while (!error.done()) {
+    error.step(model);
+  }
+  EXPECT_GT(error.rounding(), 0.0);
+  EXPECT_LT(error.rounding(), 1e-12);
+  EXPECT_EQ(error.status(), Status::kOk);
+  // A sensor next to the filter.
+  ModalModel alike{};
+  ASSERT_EQ(alike.set({0.1, 1000.0, 0.70710678}, {2, 1000.0, 0.1}, kIse), Status::kOk);
+  ASSERT_EQ(error.start(alike, 2e-3), Status::kOk);
+  while (!error.done()) {
+    error.step(alike);
+  }
+  EXPECT_EQ(error.status(), Status::kLostDigits);
+}
+
+TEST(AbsoluteError, OfAnIdealSensorCountsWhatPassesAtOnce) {
+  // Order 1: |y| <= S + g (1 - e^(-wc T)).
+  ModalModel model{};
+  ASSERT_EQ(model.set_ideal(1.2, butterworth({1, 700.0, 0.9}), kIse), Status::kOk);
+  AbsoluteError error{};
+  ASSERT_EQ(error.start(model, 1e-3), Status::kOk);
+  while (!error.done()) {
+    error.step(model);
+  }
+  EXPECT_NEAR(error.value(), 1.2 - 0.9 * std::expm1(-2.0 * std::acos(-1.0) * 0.7), 1e-14);
+}
+
 TEST(AbsoluteError, SaysWhatItCannotDo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity(), 1e6}) {

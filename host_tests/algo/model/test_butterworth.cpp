@@ -24,7 +24,7 @@ Wide product_form(const Butterworth& filter, double frequency_hz) {
 }
 
 /// The Laplace transform of Re sum r e^(pt) at j 2 pi f.
-Wide sum_form(const FilterModes& modes, double frequency_hz) {
+Wide sum_form(const ReferenceFilter& modes, double frequency_hz) {
   Wide sum = 0;
   const Wide s(0, 2 * kPiWide * frequency_hz);
   for (std::size_t i = 0; i < modes.count; ++i) {
@@ -39,7 +39,7 @@ class EveryOrder : public testing::TestWithParam<int> {};
 
 TEST_P(EveryOrder, PartialFractionsAreTheProduct) {
   const Butterworth filter = {GetParam(), 1000.0, 1.037};
-  const FilterModes modes = modes_of(filter);
+  const ReferenceFilter modes = butterworth(filter);
   EXPECT_EQ(modes.count, static_cast<std::size_t>((filter.order + 1) / 2));
   for (double f_hz = 0.0; f_hz < 3000.0; f_hz += 37.0) {
     // The residues alternate and reach 60 times the gain at order 15, so rounding shows at 1e-14
@@ -64,7 +64,7 @@ TEST_P(EveryOrder, IsMinus3dBAtTheCutoffAndMonotone) {
 
 TEST_P(EveryOrder, PolesAreStableAndTheResponseStartsAtZero) {
   const Butterworth filter = {GetParam(), 1000.0, 1.0};
-  const FilterModes modes = modes_of(filter);
+  const ReferenceFilter modes = butterworth(filter);
   const double wc = 2.0 * std::acos(-1.0) * 1000.0;
   double at_zero = 0.0;
   for (std::size_t i = 0; i < modes.count; ++i) {

@@ -45,6 +45,10 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kNotProven,         ///< No bound passed its check.
     kNothingStored,     ///< No whole record is stored there.
     kUnknownRecord,     ///< What is stored is of another version, or no such thing.
+    kDelayTooLong,      ///< A delay below 0 or above 1/(2 pi band) of the reference filter.
+    kDelayNotResolved,  ///< What a delay leaves open is too large beside the error it is taken
+                        ///< from.
+    kLostDigits,        ///< Rounding is more than 1e-9 of the energy, in every form there is.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.

@@ -122,11 +122,13 @@ static_assert(std::is_trivially_copyable_v<DissipationCheck>);
 /// 6.8 KiB beside the workspace, in which nobody else must work meanwhile.
 class EnergyBound {
  public:
-  /// Model and workspace must stay as they are until the bound is done. Both criteria, all orders.
+  /// Model and workspace must stay as they are until the bound is done. All criteria, all orders.
+  /// Where k has one sign on [0, T] the bound is the energy of the constant signal, and done.
   ///
   /// @returns
   /// * kOk: Ready to `step()`.
-  /// * kInvalidArgument: Duration not above 0 or not finite.
+  /// * kInvalidArgument: Duration not above 0 or not finite, or an ideal sensor that passes its
+  ///   input at once.
   /// * kTooManyCells: As `EnergySearch::start()`: shorten T.
   Status start(const ModalModel& model, double duration_s, GridWorkspace& workspace) noexcept;
 
@@ -140,7 +142,7 @@ class EnergyBound {
   double progress() const noexcept;
 
   /// @returns With `done()`, the bound for a = 1, in (V/(m/s^2))^2 s; else, and without a proof,
-  ///   infinity.
+  ///   infinity. With a delay of the reference, for the true delay (`true_bound()`).
   double bound() const noexcept { return bound_; }
 
   /// The number of steps of the check, and the d of each that has passed, in (V/(m/s^2))^2; the

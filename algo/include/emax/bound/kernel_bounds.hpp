@@ -32,8 +32,8 @@ constexpr std::size_t kernel_bounds_numbers(std::size_t intervals) noexcept {
 /// derivatives of order n + 2 are bounded by norms of k in closed form. Nothing is estimated but
 /// rounding, for which a relative 1e-9 is added.
 ///
-/// Only for the integral-square error and an impulse response that starts at zero (filters of
-/// order 2 and more).
+/// Only for the integral-square error and the in-band error without a delay, and an impulse
+/// response that starts at zero (filters of order 2 and more).
 class KernelBounds {
  public:
   /// Prepares the mesh. Model and memory must stay until all is read.
@@ -41,7 +41,9 @@ class KernelBounds {
   /// @param[in] numbers At least `kernel_bounds_numbers(mesh_intervals(...))`.
   /// @returns
   /// * kOk: `step()` until `done()`.
-  /// * kInvalidArgument: The duration, or the criterion is the energy difference.
+  /// * kInvalidArgument: The duration; or the criterion is the energy difference, the reference is
+  ///   delayed, the sensor is ideal, or its poles are those of the filter.
+  /// * kLostDigits: T is so short, or sensor and filter are so alike, that rounding hides k.
   /// * kInvalidOrder: A filter of order 1.
   /// * kTooManyCells: The mesh would be too large: shorten T.
   /// * kBufferTooSmall: `numbers` is.
@@ -64,6 +66,7 @@ class KernelBounds {
   void fill_tables(Span<double> numbers) noexcept;
   void fill_norms() noexcept;
   struct RowSums;
+  bool has_digits() const noexcept;
   void fill_row(std::size_t row) noexcept;
   void add_from_row_on(std::size_t row, RowSums& sums) const noexcept;
   void add_up_to_row(std::size_t row, RowSums& sums) const noexcept;

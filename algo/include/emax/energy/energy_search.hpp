@@ -37,6 +37,7 @@ struct SearchSettings {
 /// What a search ends with. Energies are for a = 1, in (V/(m/s^2))^2 s.
 struct MaximumEnergy {
   double energy = 0.0;
+  double rounding = 0.0;  ///< By how much rounding may have moved the energy: at most 1e-9 of it.
   SwitchingSignal signal = {};
   std::size_t cells = 0;       ///< Of the grid that was searched.
   std::size_t starts = 0;      ///< Starting signals tried.
@@ -126,6 +127,9 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// to 4 times, in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the
 /// result is the same on every target. 4.2 KiB beside the workspace.
 ///
+/// Where k has one sign on all of [0, T], which a short T makes sure of, the constant signal has
+/// the greatest energy (`OneSidedResponse`), and the search is done at its start.
+///
 /// Effort: at most kMaxStarts + kPolishings climbs. One climb takes 10 to 40 updates of the product
 /// where few switches are best, and up to 250 where it is a hundred switches; an update costs some
 /// 4 instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half
@@ -152,6 +156,7 @@ class EnergySearch {
   ///   duration, or no iteration or more than kMaxIterations.
   /// * kTooManyCells: The grid would need more than kMaxCells cells: shorten T, or for kPaper take
   ///   a longer step.
+  /// * kLostDigits: As for `step()`.
   Status start(const ModalModel& model, const SearchSettings& settings) noexcept;
 
   /// Makes products with Phi, looks for pulses and refines, until it has done as much as
@@ -164,6 +169,10 @@ class EnergySearch {
   /// * kOk: `done()` tells whether it was the last step.
   /// * kTooManySwitches: With the last step: the best signal has more than kMaxSwitches switches.
   ///   `result()` is then the best of those that have fewer, which is not the maximum: shorten T.
+  /// * kLostDigits: With the last step: rounding is more than 1e-9 of the energy in every form, or
+  ///   so much that the search has not seen what it did.
+  /// * kDelayNotResolved: With the last step: the delay leaves open more than 1 % of the root mean
+  ///   square of the error.
   Status step(const ModalModel& model, GridWorkspace& workspace, Span<double> trace = {}) noexcept;
 
   bool done() const noexcept { return climbs_made_ == climbs_; }
@@ -231,6 +240,9 @@ class EnergySearch {
   void take(const SwitchingSignal& signal, double energy) noexcept;
   bool is_start() const noexcept { return climbs_made_ < starts_; }
   bool is_polishing() const noexcept { return climbs_made_ >= starts_ + kicks_; }
+  Status look_at_one_sided(const ModalModel& model) noexcept;
+  Status finish(const ModalModel& model) noexcept;
+  void end_if_lost() noexcept;
 
   MaximumEnergy result_ = {};
   SearchSettings settings_ = {};
@@ -246,6 +258,7 @@ class EnergySearch {
   double shift_ = 0.0;
   double shortest_half_period_s_ = 0.0;
   double unstorable_energy_ = 0.0;
+  double rounding_ = 0.0;  // Of any energy; a square below it is nothing but rounding.
   std::size_t trace_count_ = 0;
   std::size_t climbs_made_ = 0;
   std::size_t climbs_ = 0;
@@ -260,6 +273,7 @@ class EnergySearch {
   bool at_rest_ = false;
   bool has_result_ = false;
   bool has_refined_ = false;
+  bool is_lost_ = false;  // In rounding.
 };
 
 static_assert(std::is_trivially_copyable_v<EnergySearch>);

@@ -23,7 +23,8 @@ namespace emax {
 /// t = T: the signal x(t) = sgn k(T - t) switches where T - t is a zero. k is sampled 64 times per
 /// period of its fastest mode; zeros between two samples of equal sign go unnoticed, which changes
 /// the value by less than its rounding wherever modes are of comparable size. One exponential per
-/// mode and sample, 64 more where k changes sign.
+/// mode and sample, 64 more where k changes sign. Where k has one sign the value is |s(T)| of
+/// `OneSidedResponse`. What an ideal sensor passes at once is counted in.
 class AbsoluteError {
  public:
   /// @param[in] duration_s T, above 0.
@@ -42,6 +43,12 @@ class AbsoluteError {
   bool done() const noexcept { return !running_; }
   /// @returns With `done()`, in V/(m/s^2): times a in V.
   double value() const noexcept { return value_; }
+  /// @returns With `done()`, by how much rounding may have moved the value.
+  double rounding() const noexcept { return rounding_; }
+  /// @returns With `done()`: kLostDigits if rounding is more than 1e-9 of the value, else kOk.
+  Status status() const noexcept {
+    return rounding_ <= 1e-9 * value_ ? Status::kOk : Status::kLostDigits;
+  }
   /// @returns How many zeros there are, also if not all had room.
   std::size_t zeros() const noexcept { return zeros_; }
 
@@ -51,6 +58,7 @@ class AbsoluteError {
   double duration_s_ = 0.0;
   double samples_ = 0.0;
   double value_ = 0.0;
+  double rounding_ = 0.0;
   double last_step_ = 0.0;  // The step response at the last zero.
   double last_s_ = 0.0;     // The last sample.
   std::uint32_t next_ = 0;  // The sample that comes next.

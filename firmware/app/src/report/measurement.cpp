@@ -281,6 +281,9 @@ const char* name_of_fault(Status status) noexcept {
     case Status::kNotProven:
     case Status::kNothingStored:
     case Status::kUnknownRecord:
+    case Status::kDelayTooLong:
+    case Status::kDelayNotResolved:
+    case Status::kLostDigits:
     case Status::kInvalidArgument:
     case Status::kOverdamped:
     case Status::kInvalidOrder:

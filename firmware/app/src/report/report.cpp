@@ -79,10 +79,10 @@ void write_source(const EvaluationResults& results, const ReportContext& context
 
 void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept {
   const Settings& settings = results.settings;
-  const Butterworth& filter = results.model.filter();
+  const ReferenceFilter& filter = results.model.filter();
   out.label("Reference filter").text("Butterworth low-pass, order ");
-  out.integer(static_cast<std::uint64_t>(filter.order)).text(", cutoff ");
-  out.exact(filter.cutoff_hz).text(" Hz").line();
+  out.integer(static_cast<std::uint64_t>(filter.relative_degree)).text(", cutoff ");
+  out.exact(filter.band_hz).text(" Hz").line();
   out.label("Filter gain").general(filter.gain, 7).text(" V/(m/s^2)");
   out.and_v_per_g(filter.gain, 7).text(", ");
   switch (settings.gain_mode) {

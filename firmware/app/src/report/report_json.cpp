@@ -178,10 +178,10 @@ const char* name_of(GainMode mode) noexcept {
 }
 
 void write_filter(const EvaluationResults& results, JsonWriter& json) noexcept {
-  const Butterworth& filter = results.model.filter();
+  const ReferenceFilter& filter = results.model.filter();
   json.open("filter");
-  json.integer("order", static_cast<std::uint64_t>(filter.order));
-  json.number("cutoff", filter.cutoff_hz);
+  json.integer("order", static_cast<std::uint64_t>(filter.relative_degree));
+  json.number("cutoff", filter.band_hz);
   json.number("gain", filter.gain);
   json.words("gain_mode", name_of(results.settings.gain_mode));
   json.close();
