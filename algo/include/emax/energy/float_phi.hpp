@@ -16,8 +16,8 @@ namespace emax {
 /// `PhiOperator` in `float`, divided by its largest diagonal so that no sensitivity leaves the
 /// range of `float`, and with a table by which a stretch of cells that turns is added to a product.
 ///
-/// For searching only: its products are good to 1e-6 of the largest element where few modes cancel,
-/// and to some 1e-4 of the diagonal for filters of order 15. IEEE single precision, so the bits are
+/// For searching only: its products are good to 1e-5 of the largest element where few modes cancel,
+/// and to some 1e-3 for filters of order 15. IEEE single precision, so the bits are
 /// the same on every target. 1.2 KiB; refers to nothing.
 class FloatPhi {
  public:
