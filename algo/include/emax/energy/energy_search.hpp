@@ -115,21 +115,23 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 ///
 /// kBest tries, always in this order: the constant signal, 4 columns of Phi, 4 periodic signals
 /// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs; 49
-/// for the energy difference, which has more and higher local maxima.
-/// (Random signs are the best starts: the first steps of the fixed point leave in them what the
-/// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
-/// gains most is turned and the fixed point runs again, until no pulse gains (`GridClimb`, in
-/// single precision). A pulse inside a run of equal signs is a new pair of switches, one that fills
-/// a run takes a pair away, and one at the end of a run moves a switch. A climb that ends within 1
-/// % of the highest one so far is refined in continuous time, in `double`. At last the best one
-/// goes back to the grid, which may have gains to offer again now that its switches have moved, up
-/// to 4 times, in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the
-/// result is the same on every target. 4.2 KiB beside the workspace.
+/// for the energy difference, which has more local maxima. (Random signs are the best starts: the
+/// first steps of the fixed point leave in them what the error system passes most.) From each, the
+/// fixed point runs until it rests; then the pulse that gains most is turned and the fixed point
+/// runs again, until no pulse gains (`GridClimb`, in single precision). A pulse inside a run of
+/// equal signs is a new pair of switches, one that fills a run takes a pair away, and one at the
+/// end of a run moves a switch. A climb that ends within 1 % of the highest one so far is refined
+/// in continuous time, in `double`.
 ///
-/// Effort: at most kMaxStarts + kPolishings climbs. One climb takes 10 to 40 updates of the product
-/// where few switches are best, and up to 250 where it is a hundred switches; an update costs some
-/// 4 instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half
-/// of that.
+/// Then 12 climbs, or 24, begin near the best signal: with its switches stretched so that one or
+/// two more or fewer fit in, or with a part of it turned or random. At last the best one goes back
+/// to the grid, which may have gains to offer again now that its switches have moved, up to 4
+/// times, in `double` (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the result is
+/// the same on every target. 4.2 KiB beside the workspace.
+///
+/// Effort: one climb takes 10 to 40 updates of the product where few switches are best, and up to
+/// 250 where it is a hundred switches; an update costs some 7 instructions per cell and stretch
+/// that has turned and 8 per cell and mode, and looking for a pulse some 30 per cell.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 4;
@@ -175,7 +177,8 @@ class EnergySearch {
   /// The number of energies in the trace.
   std::size_t trace_count() const noexcept { return trace_count_; }
 
-  /// In cells of products: at the end of a step one product more may have been made.
+  /// In cells of products in double precision: at the end of a step one product more may have been
+  /// made.
   static constexpr std::size_t kWorkPerStep = 640;
 
  private:
