@@ -116,16 +116,13 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 ///
 /// kBest tries, always in this order: the constant signal, 4 columns of Phi, 4 periodic signals
 /// with half-periods from that of the resonance up to T, and 20 patterns of seeded random signs; 49
-/// for the energy difference, which has more and higher local maxima.
-/// (Random signs are the best starts: the first steps of the fixed point leave in them what the
-/// error system passes most.) From each, the fixed point runs until it rests; then the pulse that
-/// gains most is turned and the fixed point runs again, until no pulse gains (`GridClimb`, in
-/// single precision). A pulse inside a run of equal signs is a new pair of switches, one that fills
-/// a run takes a pair away, and one at the end of a run moves a switch. A climb that ends within 1
-/// % of the highest one so far is refined in continuous time, in `double`. At last the best one
-/// goes back to the grid, which may have gains to offer again now that its switches have moved, up
-/// to 4 times, in `double` too (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the
-/// result is the same on every target. 4.2 KiB beside the workspace.
+/// for the energy difference, which has more local maxima. (Random signs are the best starts: the
+/// first steps of the fixed point leave in them what the error system passes most.) From each, the
+/// fixed point runs until it rests; then the pulse that gains most is turned and the fixed point
+/// runs again, until no pulse gains (`GridClimb`, in single precision). A pulse inside a run of
+/// equal signs is a new pair of switches, one that fills a run takes a pair away, and one at the
+/// end of a run moves a switch. A climb that ends within 1 % of the highest one so far is refined
+/// in continuous time, in `double`.
 ///
 /// Where k has one sign on all of [0, T], which a short T makes sure of, the constant signal has
 /// the greatest energy (`OneSidedResponse`), and the search is done at its start.
@@ -189,7 +186,8 @@ class EnergySearch {
   /// The number of energies in the trace.
   std::size_t trace_count() const noexcept { return trace_count_; }
 
-  /// In cells of products: at the end of a step one product more may have been made.
+  /// In cells of products in double precision: at the end of a step one product more may have been
+  /// made.
   static constexpr std::size_t kWorkPerStep = 640;
 
  private:

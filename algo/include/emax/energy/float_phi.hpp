@@ -16,9 +16,9 @@ namespace emax {
 /// `PhiOperator` in `float`, divided by its largest diagonal so that no sensitivity leaves the
 /// range of `float`, and with a table by which a stretch of cells that turns is added to a product.
 ///
-/// For searching only: its products are good to 1e-6 of the largest element where few modes cancel,
-/// and to some 1e-4 of the diagonal for filters of order 15. IEEE single precision, so the bits are
-/// the same on every target. 1.2 KiB; refers to nothing.
+/// For searching only: its products are good to 1e-5 of the largest element where few modes cancel,
+/// and to some 1e-3 for filters of order 15. IEEE single precision, so the bits are the same on
+/// every target. 1.2 KiB; refers to nothing.
 class FloatPhi {
  public:
   /// Takes the numbers of an operator and its model.
@@ -28,9 +28,8 @@ class FloatPhi {
   /// What the operator was divided by, in (V/(m/s^2))^2 s.
   double scale() const noexcept { return scale_; }
 
-  /// Fills some of the table for `add_stretch()`: twice what a signal that is 1 from a cell on and
-  /// -1 before it has, half of it, as a product at distances from that edge; without the end of the
-  /// record.
+  /// Fills some of the table for `add_stretch()`: at a distance of d cells behind an edge, the
+  /// product of a signal that is 1 behind the edge and -1 before it, in an endless record.
   ///
   /// @param[in]     phi   The operator of `set()`.
   /// @param[in]     begin The first distance, which follows those that are filled.
