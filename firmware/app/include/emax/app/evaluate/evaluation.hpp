@@ -115,7 +115,7 @@ class TrialResults {
 };
 
 /// The memory that an evaluation works in, lent by the caller to each call that needs it. Between
-/// `done()` and the next `start_...()` or `pursue()` it may hold anything else. 83 KiB, all zero
+/// `done()` and the next `start_...()` or `pursue()` it may hold anything else. 82 KiB, all zero
 /// before use.
 class EvaluationWorkspace {
  private:
