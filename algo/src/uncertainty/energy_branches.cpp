@@ -14,6 +14,8 @@ namespace {
 constexpr double kAcceptedError = 1e-10;
 /// or if that is more, as part of the standard deviation of the energy over the draws.
 constexpr double kAcceptedDeviation = 1e-6;
+/// the same where no higher degree is left: below what 2e5 draws say of an interval by a factor 50.
+constexpr double kAcceptedAtLast = 1e-4;
 /// The farthest from the estimate that polynomials of the normal distribution hold, in standard
 /// deviations along each axis; and where its corners are.
 constexpr double kNormalReach = 4.0;
@@ -22,17 +24,23 @@ constexpr double kInverseRoot3 = 0.57735026918962576;
 constexpr double kLeastReach = 1.0;
 /// A degree more makes the error some 10 to 100 times smaller.
 constexpr double kMostHope = 1e4;
-/// The error elsewhere, as a multiple of the largest one found.
-constexpr double kDoubt = 8.0;
+/// The error elsewhere, as a multiple of the largest one found; apart for the inner eighth of the
+/// cube, as a signal that ends near a corner spoils less there.
+constexpr double kDoubt = 3.0;
+constexpr double kInner = 0.5;
 /// Part of the change of the best energy, and of that energy: how far a branch may stay below the
 /// best at all nodes and still be the best between them.
 constexpr double kRoomBetweenNodes = 0.05;
 constexpr double kSame = 1e-9;
 /// On the way from one device to another a refinement is made wherever the resonance has moved by
 /// this angle, as far back as it is remembered. Longer legs can end on another signal.
-constexpr double kLeg_rad = 0.25;
+constexpr double kLeg_rad = 0.5;
 constexpr double kMostLegs = 32.0;
 constexpr double kMemory = 3.0;  // In time constants.
+
+bool is_inner(const CubePoint& point) noexcept {
+  return abs(point[0]) <= kInner && abs(point[1]) <= kInner && abs(point[2]) <= kInner;
+}
 
 /// Van der Corput's sequence: the digits of a number behind the point, in reverse.
 double radical_inverse(std::size_t number, std::size_t base) noexcept {
@@ -389,6 +397,9 @@ void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& worksp
   energies_[branch_] = refiner_.result().energy;
   const double error = abs(value(branch_, point) - energies_[branch_]);
   fits_[branch_].error = std::max(fits_[branch_].error, error);
+  if (is_inner(point)) {
+    fits_[branch_].inner_error = std::max(fits_[branch_].inner_error, error);
+  }
   if (++branch_ < pool_.count()) {
     return;
   }
@@ -410,31 +421,36 @@ void EnergyBranches::compare_branches() noexcept {
   }
 }
 
-double EnergyBranches::accepted_error(std::size_t branch) const noexcept {
+double EnergyBranches::accepted_error(std::size_t branch, double part) const noexcept {
   // A unit of a place has the variance 1, or that of a uniform number within +-1.
   const double unit = is_normal_ ? inverse_reach_ : kInverseRoot3;
   double variance = 0.0;
   for (const double slope : cube_slopes(degree_, coefficients(branch))) {
     variance += slope * unit * (slope * unit);
   }
-  return std::max(kAcceptedError * abs(origin_), kAcceptedDeviation * sqrt(variance));
+  return std::max(kAcceptedError * abs(origin_), part * sqrt(variance));
 }
 
 void EnergyBranches::end_checks() noexcept {
   drop_low();
-  tolerance_ = kAcceptedError;
-  for (std::size_t b = 0; b < pool_.count(); ++b) {
-    Fit& fit = fits_[b];
-    const double accepted = accepted_error(b);
-    fit.has_failed = !(fit.error <= accepted);
-    fit.doubt = fit.has_failed ? kDoubt * fit.error : 0.0;
-    tolerance_ = fit.has_failed ? tolerance_ : std::max(tolerance_, accepted / abs(origin_));
-  }
+  accept(kAcceptedDeviation);
   if (can_raise_degree()) {
     begin_fit(degree_ + 1);
     return;
   }
+  accept(kAcceptedAtLast);
   phase_ = Phase::kReady;
+}
+
+/// Says which polynomials hold, to this part of the standard deviation of their energies.
+void EnergyBranches::accept(double part) noexcept {
+  tolerance_ = kAcceptedError;
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    fits_[b].has_failed = !(fits_[b].error <= accepted_error(b, part));
+    if (!fits_[b].has_failed) {
+      tolerance_ = std::max(tolerance_, fits_[b].error / abs(origin_));
+    }
+  }
 }
 
 bool EnergyBranches::can_raise_degree() const noexcept {
@@ -442,7 +458,8 @@ bool EnergyBranches::can_raise_degree() const noexcept {
     return false;
   }
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    if (fits_[b].has_failed && fits_[b].error <= kMostHope * accepted_error(b)) {
+    if (fits_[b].has_failed &&
+        fits_[b].error <= kMostHope * accepted_error(b, kAcceptedDeviation)) {
       return true;
     }
   }
@@ -490,16 +507,21 @@ void EnergyBranches::predict(const CubePoint& point) noexcept {
     energy_ = value(0, point);
     return;
   }
+  const bool inner = is_inner(point);
+  const auto doubt = [&](std::size_t b) {
+    const Fit& fit = fits_[b];
+    return fit.has_failed ? kDoubt * (inner ? fit.inner_error : fit.error) : 0.0;
+  };
   double values[kBranches];
   double surely = -std::numeric_limits<double>::infinity();
   energy_ = surely;
   for (std::size_t b = 0; b < count; ++b) {
     values[b] = value(b, point);
-    surely = std::max(surely, values[b] - fits_[b].doubt);
+    surely = std::max(surely, values[b] - doubt(b));
     energy_ = fits_[b].has_failed ? energy_ : std::max(energy_, values[b]);
   }
   for (std::size_t b = 0; b < count; ++b) {
-    if (fits_[b].has_failed && !(values[b] + fits_[b].doubt < surely)) {
+    if (fits_[b].has_failed && !(values[b] + doubt(b) < surely)) {
       pending_ |= 1U << b;
     }
   }

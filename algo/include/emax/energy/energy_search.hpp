@@ -124,13 +124,18 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// end of a run moves a switch. A climb that ends within 1 % of the highest one so far is refined
 /// in continuous time, in `double`.
 ///
+/// Then 12 climbs, or 24, begin near the best signal: with its switches stretched so that one or
+/// two more or fewer fit in, or with a part of it turned or random. At last the best one goes back
+/// to the grid, which may have gains to offer again now that its switches have moved, up to 4
+/// times, in `double` (`FixedPoint`, `PulseTurn`). Of equals the first one wins, so the result is
+/// the same on every target. 4.2 KiB beside the workspace.
+///
 /// Where k has one sign on all of [0, T], which a short T makes sure of, the constant signal has
 /// the greatest energy (`OneSidedResponse`), and the search is done at its start.
 ///
-/// Effort: at most kMaxStarts + kPolishings climbs. One climb takes 10 to 40 updates of the product
-/// where few switches are best, and up to 250 where it is a hundred switches; an update costs some
-/// 4 instructions per cell and changed stretch, 8 per cell and mode, and looking for a pulse half
-/// of that.
+/// Effort: one climb takes 10 to 40 updates of the product where few switches are best, and up to
+/// 250 where it is a hundred switches; an update costs some 7 instructions per cell and stretch
+/// that has turned and 8 per cell and mode, and looking for a pulse some 30 per cell.
 class EnergySearch {
  public:
   static constexpr std::size_t kColumnStarts = 4;

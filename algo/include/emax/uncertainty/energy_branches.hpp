@@ -41,7 +41,7 @@ struct BranchNotes {
 ///
 /// Nothing here knows the criterion: it is the model's. Several figures can share `DeviceDraws`.
 ///
-/// Memory with the default capacities: 10.9 KiB, of which the model has 2.4 (one is live at a
+/// Memory with the default capacities: 10.3 KiB, of which the model has 2.4 (one is live at a
 /// time), the signals 4.8 (8 of up to 256 switches), the polynomials 3.3 (8 of degree 4, 7 of 5, 5
 /// of degree 6). Cost: 9 searches, then for each branch 125 to 343 refinements and 38 more; after
 /// that, one multiplication and one addition for each of 35 to 84 terms.
@@ -104,13 +104,13 @@ class EnergyBranches {
   static constexpr std::size_t kPlaces = BranchPool::kPlaces;
   static constexpr std::size_t kCorners = kPlaces - 1;
   static constexpr std::size_t kChecks = kCorners + 30;
-  static constexpr std::size_t kCoefficients = 420;  // 8 of degree 4, 7 of 5, 5 of 6.
+  static constexpr std::size_t kCoefficients = 336;  // 8 of degree 4, 6 of 5, 4 of 6.
 
   /// What is known of a branch's polynomial.
   struct Fit {
-    double error = 0.0;    // The largest found.
-    double doubt = 0.0;    // What it may be off by if it failed; 0 if it passed.
-    double nearest = 0.0;  // To the best of all, at nodes and checks.
+    double error = 0.0;        // The largest found,
+    double inner_error = 0.0;  // and that in the middle.
+    double nearest = 0.0;      // To the best of all, at nodes and checks.
     bool has_failed = false;
   };
 
@@ -141,7 +141,8 @@ class EnergyBranches {
   void compare_branches() noexcept;
   void remove(std::size_t branch) noexcept;
   void drop_low() noexcept;
-  double accepted_error(std::size_t branch) const noexcept;
+  void accept(double part) noexcept;
+  double accepted_error(std::size_t branch, double part) const noexcept;
   bool is_within_reach(const DeviceDraws::Place& place) const noexcept;
   CubePoint to_point(const DeviceDraws::Place& place) const noexcept;
   double value(std::size_t branch, const CubePoint& point) const noexcept;

@@ -35,7 +35,7 @@ struct TrialSettings : DrawSettings {
 ///     }
 ///     const double energy = trials.energy(0, workspace);
 ///
-/// 11.3 KiB beside the workspace.
+/// 10.6 KiB beside the workspace.
 class EnergyTrials {
  public:
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
