@@ -244,7 +244,10 @@ TEST(InBandTrials, ReachTheMaximumOfACornerWithTheEstimatesDelay) {
   ASSERT_EQ(moved.set_device(corner), Status::kOk);
   EXPECT_EQ(moved.delay_s(), model.delay_s());
   const double expected = search(moved, 2e-3).maximum.energy;
-  EXPECT_NEAR(trials->energy_of(corner, *workspace), expected, 1e-9 * expected);
+  // The trial is the largest of several signals: it may find a little more than one search does.
+  const double found = trials->energy_of(corner, *workspace);
+  EXPECT_GE(found, (1.0 - 1e-9) * expected);
+  EXPECT_LE(found, (1.0 + 1e-6) * expected);
 }
 
 }  // namespace
