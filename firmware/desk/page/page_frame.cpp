@@ -48,6 +48,9 @@ table { border-collapse: collapse; }
 .wide { overflow-x: auto; margin: .8rem 0; }
 .numbers { font-variant-numeric: tabular-nums; font-size: .88rem; overflow-wrap: normal; }
 .numbers th, .numbers td { padding: .12rem .7rem; text-align: right; white-space: nowrap; }
+.numbers .name { min-width: 8.5rem; text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.numbers tbody th { font-weight: normal; }
+.numbers tbody th, .numbers tbody td { vertical-align: top; }
 .numbers thead tr:last-child th { border-bottom: 1px solid var(--text); }
 figure { margin: 1.2rem 0; }
 figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
@@ -55,6 +58,12 @@ figcaption { margin-top: .4rem; color: var(--soft); font-size: .92rem; }
 a { color: inherit; }
 footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--line); color: var(--soft);
   font-size: .9rem; }
+@media screen and (max-width: 36rem) {
+  .rows th, .rows td { display: block; width: auto; }
+  .rows td { padding-bottom: .5rem; }
+  figure { overflow-x: auto; }
+  figure svg { min-width: 36rem; }
+}
 @page { size: A4; margin: 15mm; }
 @media print {
   :root { --text: #000000; --soft: #404040; --line: #a0a0a0; --paper: #ffffff; --warn: #000000;
@@ -64,12 +73,14 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figure svg { max-height: 85mm; }
   #fit svg { max-height: 120mm; }
+  #ranking svg { max-height: 230mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
   figure, .wide, .numbers tr, .headline, .warning, .note { break-inside: avoid; }
   .warning { border: 1.5pt solid #000000; }
   .wide { overflow: visible; }
   .numbers { font-size: 8pt; }
   .numbers th, .numbers td { padding: .05rem .35rem; }
+  .numbers .name { min-width: 0; }
 }
 </style>
 </head>
