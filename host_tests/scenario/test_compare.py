@@ -142,7 +142,7 @@ class CompareDevices(Comparing, ProgramTest):
         # An interval over the box is none of E.
         self.assertEqual([device["interval"] is None for device in found["devices"]], [True, False, False])
         text = " ".join(self.succeed("compare", *(f"{i}.json" for i in range(3)), "--by", "energy").split())
-        self.assertIn("u(E) is that over the box of the trials times the root of 3, without the correlation of S, f0 "
+        self.assertIn("Note: u(E) is that over the box of the trials times the root of 3, without the correlation of S, f0 "
                       "and beta, for 0.json.", text)
 
     def test_figures(self):
@@ -257,7 +257,7 @@ class CompareInBand(Comparing, ProgramTest):
         self.assertEqual(self.ranks(found), [("2.json", 1, 1), ("1.json", 2, 2), ("0.json", 3, 3)])
         self.assertEqual([d["matched_percent"] for d in found["devices"]], [3.0, None, 1.0])
         text = " ".join(self.succeed("compare", "0.json", "1.json", "2.json").split())
-        self.assertIn("NOTE: All are ranked by the in-band error with the sensor's delay: there is no figure with the "
+        self.assertIn("WARNING: All are ranked by the in-band error with the sensor's delay: there is no figure with the "
                       "delay taken out for B (epsilon is 3.9 % of the figure,?above 1 %).", text)
         self.assertIn("Ranked by in-band error with the sensor's delay", text)
         self.assertNotIn("All are ranked", self.succeed("compare", "0.json", "1.json", "2.json", "--by", "band"))

@@ -188,8 +188,8 @@ void write_comparison_page(const Comparison& comparison, const std::string& svg,
   }
   append_headline(html, comparison);
   append_conditions(html, comparison);
-  for (const std::string& note : notes_of(comparison)) {
-    append_paragraph(html, "warning", note);
+  for (const Note& note : notes_of(comparison)) {
+    append_paragraph(html, note.is_warning ? "warning" : "note", note.words);
   }
   append_ranking(html, comparison, svg);
   append_neighbours(html, comparison);

@@ -114,9 +114,9 @@ void write_comparison(const Comparison& comparison, TextWriter& out) {
   for (const Fact& condition : conditions_of(comparison)) {
     out.text("  ").left(kLabel).text(condition.name.c_str()).text(condition.words.c_str()).line();
   }
-  for (const std::string& note : notes_of(comparison)) {
+  for (const Note& note : notes_of(comparison)) {
     out.line();
-    write_words("NOTE: " + note, "  ", "  ", out);
+    write_words((note.is_warning ? "WARNING: " : "Note: ") + note.words, "  ", "  ", out);
   }
   out.line();
   write_table(comparison, out);

@@ -80,35 +80,45 @@ std::string criterion_of(const Result& first) {
          (first.method == "paper" ? ", the paper's method" : ", the best signal found");
 }
 
-// Words of others within ours.
-std::string reason_of(const Result& result) {
-  return result.matched_refused.empty() ? "" : " (" + printable(result.matched_refused) + ")";
+// Why devices have no matched figure, in the words of their reports.
+std::string reason_of(const std::vector<const Result*>& refused) {
+  const std::string& reason = refused.front()->matched_refused;
+  const bool is_one = std::all_of(refused.begin(), refused.end(), [&](const Result* result) {
+    return result->matched_refused == reason;
+  });
+  if (!is_one) {
+    return " (their reports say why)";
+  }
+  return reason.empty() ? "" : " (" + printable(reason) + ")";
 }
 
-void add_note_on_refusals(const Comparison& comparison, std::vector<std::string>& notes) {
+void add_note_on_refusals(const Comparison& comparison, std::vector<Note>& notes) {
   if (comparison.by == comparison.asked) {
     return;
   }
   const std::vector<const Result*> refused = those_that(
       comparison, [](const Result& result) { return !result.figure(FigureKind::kMatched).exists; });
   notes.push_back(
-      "All are ranked by the in-band error with the sensor's delay: there is no "
-      "figure with the delay taken out for " +
-      list_of(refused) + reason_of(*refused.front()) + ".");
+      {"All are ranked by the in-band error with the sensor's delay: there is no "
+       "figure with the delay taken out for " +
+           list_of(refused) + reason_of(refused) + ".",
+       true});
 }
 
-void add_notes_on_marks(const Comparison& comparison, std::vector<std::string>& notes) {
+void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) {
   const std::vector<const Result*> warned =
       those_that(comparison, [](const Result& result) { return result.fit_warns; });
   if (!warned.empty()) {
-    notes.push_back("Not compared, because chi-square of the fit warns: " + list_of(warned) +
-                    ". The points do not follow the model within their uncertainties, so the "
-                    "figure and its U mean little.");
+    notes.push_back({"Not compared, because chi-square of the fit warns: " + list_of(warned) +
+                         ". The points do not follow the model within their uncertainties, so the "
+                         "figure and its U mean little.",
+                     true});
   }
   const std::vector<const Result*> simulated = simulated_of(comparison);
   if (!simulated.empty()) {
-    notes.push_back("Not compared, because the bench was simulated: " + list_of(simulated) +
-                    ". The figures say nothing about a real sensor.");
+    notes.push_back({"Not compared, because the bench was simulated: " + list_of(simulated) +
+                         ". The figures say nothing about a real sensor.",
+                     true});
   }
 }
 
@@ -126,7 +136,7 @@ bool differs_by_percent(const Comparison& comparison) {
   return false;
 }
 
-void add_notes_on_energy(const Comparison& comparison, std::vector<std::string>& notes) {
+void add_notes_on_energy(const Comparison& comparison, std::vector<Note>& notes) {
   if (comparison.by != FigureKind::kEnergy) {
     return;
   }
@@ -134,14 +144,16 @@ void add_notes_on_energy(const Comparison& comparison, std::vector<std::string>&
       those_that(comparison, [](const Result& result) { return result.energy_u_is_of_box; });
   if (!of_box.empty()) {
     notes.push_back(
-        "u(E) is that over the box of the trials times the root of 3, without the "
-        "correlation of S, f0 and beta, for " +
-        list_of(of_box) + ".");
+        {"u(E) is that over the box of the trials times the root of 3, without the "
+         "correlation of S, f0 and beta, for " +
+             list_of(of_box) + ".",
+         false});
   }
   if (differs_by_percent(comparison)) {
     notes.push_back(
-        "By the rms error in percent of S a the order is another one: the devices "
-        "differ in S, and E grows with its square.");
+        {"By the rms error in percent of S a the order is another one: the devices "
+         "differ in S, and E grows with its square.",
+         false});
   }
 }
 
@@ -325,8 +337,8 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
   return legend;
 }
 
-std::vector<std::string> notes_of(const Comparison& comparison) {
-  std::vector<std::string> notes;
+std::vector<Note> notes_of(const Comparison& comparison) {
+  std::vector<Note> notes;
   add_note_on_refusals(comparison, notes);
   add_notes_on_marks(comparison, notes);
   add_notes_on_energy(comparison, notes);

@@ -15,6 +15,12 @@ struct Fact {
   std::string words;
 };
 
+/// What must be known to read the ranks right.
+struct Note {
+  std::string words;
+  bool is_warning = false;  ///< The ranks are not what they seem to be.
+};
+
 /// One row per device below headings.
 struct ComparisonTable {
   std::vector<std::string> headings;
@@ -42,9 +48,9 @@ ComparisonTable table_of(const Comparison& comparison);
 /// @returns What columns and marks mean.
 std::vector<Fact> legend_of(const Comparison& comparison);
 
-/// @returns What must be known to read the ranks right: another figure than the one asked for,
-/// devices that are not compared, u(E) from elsewhere, another order in percent.
-std::vector<std::string> notes_of(const Comparison& comparison);
+/// @returns As warnings that another figure than the one asked for ranks, and which devices are not
+/// compared; besides where u(E) comes from, and that the order in percent is another one.
+std::vector<Note> notes_of(const Comparison& comparison);
 
 /// @param[in] index Of a pair.
 /// @returns "told apart", "CANNOT BE TOLD APART", "CANNOT BE RANKED" or "not compared" as the name,

@@ -30,6 +30,7 @@ body { margin: 0 auto; padding: 1.5rem; max-width: 62rem; background: var(--pape
 h1 { margin: 0 0 .2rem; font-size: 1.7rem; line-height: 1.2; }
 h2 { margin: 2.2rem 0 .5rem; padding-top: .6rem; border-top: 1px solid var(--line); font-size: 1.25rem; }
 p { margin: .6rem 0; }
+sup { line-height: 0; }
 .about { color: var(--soft); }
 #title .about { white-space: pre-line; }
 .headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(14rem, 1fr)); gap: .8rem 1.5rem;
