@@ -282,7 +282,10 @@ class CompareInBand(Comparing, ProgramTest):
             self.assertNotIn("SIMULATION", text)
 
     def test_simulated_bench(self):
-        files = [result(matched=1.0, device="good"), result(matched=3.0, device="toy", simulated=True, fit_warns=True)]
+        files = [result(matched=1.0, device="good"), result(matched=3.0, device="toy", simulated=True)]
+        pair = self.compare(*files, by="matched")["pairs"][0]
+        self.assertEqual((pair["told_apart"], pair["not_compared"]), (False, "the bench of toy was simulated"))
+        files[1] = result(matched=3.0, device="toy", simulated=True, fit_warns=True)
         files[0]["band"]["matched"]["bound_percent"] = 1.1
         found = self.compare(*files, by="matched")
         self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2)])
@@ -593,6 +596,16 @@ class CompareRefusals(Comparing, ProgramTest):
                 for by in ["matched", "band", "energy"] if name != "a" else ["energy"]:
                     self.refuse(["compare", "a.json", "b.json", "--out", "out", "--by", by], "emax: b.json: " + words,
                                 "a.json", "expected the same conditions")
+
+    def test_criterion_in_words(self):
+        for criterion, words in [("ise", "integral-square error"), ("difference", "energy difference"),
+                                 ("band", "in-band error"), ("\n\u00fc", "?\u00fc")]:
+            both = [result(), result(6e-3)]
+            for name, each in zip("ab", both):
+                each["energy"]["criterion"] = criterion
+                self.save(name, each)
+            printed = self.run_program("compare", "a", "b").stdout.decode()
+            self.assertRegex(printed, rf"\n  Criterion +{re.escape(words)}, the best signal found\n")
 
     def test_results_without_figures_of_the_band(self):
         self.save("a.json", result())

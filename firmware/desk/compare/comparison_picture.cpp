@@ -152,7 +152,7 @@ std::string line_of_conditions(const Comparison& comparison) {
     out.text(", gain ").general(first.gain, 6).text(" V/(m/s²)");
   }
   if (comparison.by == FigureKind::kEnergy) {
-    out.text(first.criterion == "ise" ? ", integral-square error" : ", energy difference");
+    out.text(", ").text(criterion_of(first).c_str());
     out.text(first.method == "paper" ? ", paper's method" : "");
   }
   return sink.text();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "emax/app/base/text_writer.hpp"
 #include "emax/base/elementary.hpp"
@@ -73,11 +74,6 @@ std::string signal_of(const Comparison& comparison) {
     }
     out.text(" for ").general(1e3 * first.duration_s, 10).text(" ms");
   });
-}
-
-std::string criterion_of(const Result& first) {
-  return std::string(first.criterion == "ise" ? "integral-square error" : "energy difference") +
-         (first.method == "paper" ? ", the paper's method" : ", the best signal found");
 }
 
 // Why devices have no matched figure, in the words of their reports.
@@ -284,6 +280,20 @@ std::string mark_of(const Result& result) {
   return mark;
 }
 
+std::string criterion_of(const Result& result) {
+  constexpr std::pair<std::string_view, const char*> kWords[] = {
+      {"ise", "integral-square error"},
+      {"difference", "energy difference"},
+      {"band", "in-band error"},
+  };
+  for (const auto& words : kWords) {
+    if (result.criterion == words.first) {
+      return words.second;
+    }
+  }
+  return printable(result.criterion);
+}
+
 std::string banner_of(const Comparison& comparison) {
   const std::size_t count = simulated_of(comparison).size();
   if (count == 0) {
@@ -296,10 +306,12 @@ std::string banner_of(const Comparison& comparison) {
 std::vector<Fact> conditions_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
   const char* what = comparison.by == FigureKind::kEnergy ? "" : ", worst rms in % of S a";
-  return {{"Filter", filter_of(first)},
-          {"Signal", signal_of(comparison)},
-          {"Criterion", criterion_of(first)},
-          {"Ranked by", figure_words(comparison.by).words + std::string(what)}};
+  return {
+      {"Filter", filter_of(first)},
+      {"Signal", signal_of(comparison)},
+      {"Criterion", criterion_of(first) + (first.method == "paper" ? ", the paper's method"
+                                                                   : ", the best signal found")},
+      {"Ranked by", figure_words(comparison.by).words + std::string(what)}};
 }
 
 ComparisonTable table_of(const Comparison& comparison) {
@@ -314,14 +326,14 @@ ComparisonTable table_of(const Comparison& comparison) {
 }
 
 std::vector<Fact> legend_of(const Comparison& comparison) {
-  const bool is_ise = comparison.results.front().criterion == "ise";
+  const bool is_difference = comparison.results.front().criterion == "difference";
   std::vector<Fact> legend = {
       {"rank", "1-2 is first or second: the uncertainties do not say which."},
       {"matched %",
        "the largest rms error within the filter's band, the sensor's constant delay "
        "taken out, in percent of S a. An ideal sensor has 0."},
       {"in band %", "the same with the sensor's delay."},
-      {"paper's %", std::string(is_ise ? "rms error, " : "") +
+      {"paper's %", std::string(is_difference ? "" : "rms error, ") +
                         "sqrt(E/T) in percent of S a; mostly the delay of the filter and what it "
                         "keeps out" +
                         ideal_of(comparison) + "."},

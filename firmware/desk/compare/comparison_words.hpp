@@ -38,6 +38,9 @@ std::string mark_of(const Result& result);
 /// if all was measured.
 std::string banner_of(const Comparison& comparison);
 
+/// @returns What the energy is that of: "integral-square error", for instance.
+std::string criterion_of(const Result& result);
+
 /// @returns Filter, signal, criterion, and what ranks.
 std::vector<Fact> conditions_of(const Comparison& comparison);
 
