@@ -10,6 +10,9 @@ constexpr std::size_t kMaxIterations = 200;
 constexpr std::size_t kMaxTurns = 1000;
 /// Products that may find, at the end of a climb, that it goes on.
 constexpr std::size_t kMaxProducts = 64;
+/// Rests in a row that gain nothing. A gain that is real but less than the rounding of the energy
+/// may not show at once.
+constexpr std::size_t kMaxFruitless = 8;
 /// A product from scratch costs as much as this many stretches.
 constexpr std::size_t kMaxStretches = 12;
 /// A quarter of the least gain of a pulse, as part of the energy, and as part of the diagonal.
@@ -134,7 +137,7 @@ std::size_t GridClimb::take_signs(Signs signs, Signs applied, Span<const float> 
     changed = changed || after != before;
     signs.set_word(word, after);
   }
-  if (changed && iterations_ < kMaxIterations) {
+  if (changed && iterations_ < kMaxIterations && fruitless_ < kMaxFruitless) {
     ++iterations_;
     begin_update(signs, applied);
     return size / 4 + 1;
@@ -163,6 +166,9 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
     energy += static_cast<double>(positive ? sum : -sum);
   }
   energy_ = energy;
+  const bool is_higher = turns_ == 0 || energy > highest_;
+  highest_ = is_higher ? energy : highest_;
+  fruitless_ = is_higher ? 0 : fruitless_ + 1;
   best_ = {};
   const auto least = static_cast<float>(kSmallestGain * (energy < 0.0 ? -energy : energy));
   best_.gain = least > kSmallestGainOfDiagonal ? least : kSmallestGainOfDiagonal;
@@ -218,7 +224,8 @@ std::size_t GridClimb::look_at_word(std::size_t word, std::uint32_t starts, cons
 }
 
 void GridClimb::turn_best(Signs signs, Signs applied) noexcept {
-  if (best_.width != 0 && turns_ < kMaxTurns) {
+  const bool is_over = turns_ == kMaxTurns || fruitless_ >= kMaxFruitless;
+  if (best_.width != 0 && !is_over) {
     ++turns_;
     for (std::size_t i = best_.cell; i < best_.cell + best_.width; ++i) {
       signs.turn(i);
