@@ -4,7 +4,7 @@
 namespace emax {
 namespace {
 
-/// Iterates until the first rest; later ones count anew.
+/// Iterates until the first rest; they count anew at each rest that has gained.
 constexpr std::size_t kMaxIterations = 200;
 /// Pulses turned in one climb; no run has been seen to need as many.
 constexpr std::size_t kMaxTurns = 1000;
@@ -15,6 +15,8 @@ constexpr std::size_t kMaxProducts = 64;
 constexpr std::size_t kMaxFruitless = 8;
 /// A product from scratch costs as much as this many stretches.
 constexpr std::size_t kMaxStretches = 12;
+/// Updates until their rounding has to go: it adds up, and energies would rise with it.
+constexpr std::size_t kMaxUpdates = 256;
 /// A quarter of the least gain of a pulse, as part of the energy, and as part of the diagonal.
 constexpr double kSmallestGain = 0.25e-7;
 constexpr float kSmallestGainOfDiagonal = 2e-5F;
@@ -97,6 +99,10 @@ void GridClimb::begin_update(Signs signs, Signs applied) noexcept {
   phase_ = Phase::kStretches;
   next_ = 0;
   at_end_ = {};
+  if (updates_ == kMaxUpdates) {
+    phase_ = Phase::kProduct;
+    return;
+  }
   std::size_t cell = 0;
   for (std::size_t stretches = 0; (cell = signs.first_difference(applied, cell)) != signs.size();
        cell = turned_end(signs, applied, cell)) {
@@ -155,7 +161,6 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
     has_rested_ = true;
     first_iterations_ = iterations_;
   }
-  iterations_ = 0;
   double energy = 0.0;
   for (std::size_t i = 0; i < signs.size();) {
     const bool positive = signs.is_positive(i);
@@ -166,11 +171,13 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
     energy += static_cast<double>(positive ? sum : -sum);
   }
   energy_ = energy;
-  const bool is_higher = turns_ == 0 || energy > highest_;
+  const double size = energy < 0.0 ? -energy : energy;
+  const bool is_higher = turns_ == 0 || energy > highest_ + kSmallestGain * size;
   highest_ = is_higher ? energy : highest_;
   fruitless_ = is_higher ? 0 : fruitless_ + 1;
+  iterations_ = is_higher ? 0 : iterations_;
   best_ = {};
-  const auto least = static_cast<float>(kSmallestGain * (energy < 0.0 ? -energy : energy));
+  const auto least = static_cast<float>(kSmallestGain * size);
   best_.gain = least > kSmallestGainOfDiagonal ? least : kSmallestGainOfDiagonal;
   next_ = 0;
   phase_ = Phase::kPulses;
