@@ -66,11 +66,15 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
     (void)model_.set_gain(estimate_.sensitivity);  // A device's sensitivity is a valid gain.
   }
   is_normal_ = draws.distribution() == Distribution::kNormal;
-  reach_ = draws.reach(is_normal_ ? kNormalReach : 1.0);
-  inverse_reach_ = 1.0 / reach_;
-  corner_ = is_normal_ ? kInverseRoot3 * reach_ : 1.0;
+  const double reach = draws.reach(is_normal_ ? kNormalReach : 1.0);
+  is_unit_ = reach == 1.0;
+  is_piece_ = false;
+  corner_ = is_normal_ ? kInverseRoot3 : 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
     axes_[a] = draws.moves(a, gain_follows);
+    middle_[a] = 0.0;
+    reach_[a] = reach;
+    inverse_reach_[a] = 1.0 / reach;
   }
   pool_.clear();
   pool_.add(0, best.signal);
@@ -103,8 +107,77 @@ void EnergyBranches::prepare(const DeviceDraws& draws, EnergySearch& search,
     case Phase::kChecks:
       step_checks(draws, workspace);
       return;
+    case Phase::kSeeds:
     case Phase::kReady:
       return;
+  }
+}
+
+void EnergyBranches::start_piece(const EnergyBranches& whole, const CubePoint& middle,
+                                 const CubePoint& half) noexcept {
+  model_ = whole.model_;
+  search_ = whole.search_;
+  estimate_ = whole.estimate_;
+  gain_follows_ = whole.gain_follows_;
+  is_normal_ = whole.is_normal_;
+  axes_ = whole.axes_;
+  middle_ = whole.from_point(middle);
+  is_unit_ = false;
+  is_piece_ = true;
+  corner_ = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    reach_[a] = half[a] * whole.reach_[a];
+    inverse_reach_[a] = 1.0 / reach_[a];
+  }
+  pool_.clear();
+  degree_ = 0;
+  terms_ = 0;
+  tolerance_ = 0.0;
+  unsearched_ = 0;
+  pending_ = 0;
+  point_ = 0;
+  branch_ = 0;
+  is_refining_ = false;
+  phase_ = Phase::kSeeds;
+}
+
+void EnergyBranches::prepare_piece(const EnergyBranches& whole, const DeviceDraws& draws,
+                                   GridWorkspace& workspace) noexcept {
+  switch (phase_) {
+    case Phase::kSeeds:
+      step_seeds(whole, draws, workspace);
+      return;
+    case Phase::kMissing:
+      step_missing(draws, workspace);
+      return;
+    case Phase::kNodes:
+      step_nodes(draws, workspace);
+      return;
+    case Phase::kChecks:
+      step_checks(draws, workspace);
+      return;
+    case Phase::kKnown:
+    case Phase::kSearch:
+    case Phase::kReady:
+      return;
+  }
+}
+
+/// Takes what the whole's signals become in the middle of the piece.
+void EnergyBranches::step_seeds(const EnergyBranches& whole, const DeviceDraws& draws,
+                                GridWorkspace& workspace) noexcept {
+  if (!is_refining_) {
+    whole.pool_.load(branch_, search_.duration_s, workspace.refinement(), workspace.signal());
+    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(branch_))), draws.device_at(middle_),
+               workspace);
+  }
+  if (!step_refinement(workspace)) {
+    return;
+  }
+  pool_.offer(0, workspace.signal(), refiner_.result().energy);
+  if (++branch_ == whole.pool_.count()) {
+    branch_ = 0;
+    phase_ = Phase::kMissing;
   }
 }
 
@@ -116,6 +189,7 @@ double EnergyBranches::progress() const noexcept {
     case Phase::kKnown:
     case Phase::kSearch:
       return kSearches * static_cast<double>(point_) / static_cast<double>(kPlaces);
+    case Phase::kSeeds:
     case Phase::kMissing:
       return kSearches;
     case Phase::kNodes:
@@ -160,14 +234,14 @@ void EnergyBranches::set_device(const Accelerometer& device) noexcept {
 }
 
 /// A corner on the axes that matter: bit a of the index is the side of axis a.
-DeviceDraws::Place EnergyBranches::corner(std::size_t index, double unit) const noexcept {
-  DeviceDraws::Place place = {};
+CubePoint EnergyBranches::corner(std::size_t index) const noexcept {
+  CubePoint point = {};
   for (std::size_t a = 0; a < 3; ++a) {
     if (axes_[a]) {
-      place[a] = (index >> a & 1U) != 0 ? unit : -unit;
+      point[a] = (index >> a & 1U) != 0 ? corner_ : -corner_;
     }
   }
-  return place;
+  return point;
 }
 
 /// Whether a corner is another one than those before it.
@@ -180,15 +254,15 @@ bool EnergyBranches::is_corner(std::size_t index) const noexcept {
   return true;
 }
 
-/// The estimate, then the corners.
+/// The estimate or the middle, then the corners.
 DeviceDraws::Place EnergyBranches::place_at(std::size_t index) const noexcept {
-  return index == 0 ? DeviceDraws::Place{} : corner(index - 1, corner_);
+  return index == 0 ? middle_ : from_point(corner(index - 1));
 }
 
 /// The corners, then Halton's sequence.
 CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
   if (index < kCorners) {
-    return corner(index, corner_ * inverse_reach_);
+    return corner(index);
   }
   constexpr std::size_t kBases[3] = {2, 3, 5};
   CubePoint point = {};
@@ -201,20 +275,22 @@ CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
 }
 
 DeviceDraws::Place EnergyBranches::from_point(const CubePoint& point) const noexcept {
-  return {reach_ * point[0], reach_ * point[1], reach_ * point[2]};
+  return {middle_[0] + reach_[0] * point[0], middle_[1] + reach_[1] * point[1],
+          middle_[2] + reach_[2] * point[2]};
 }
 
 CubePoint EnergyBranches::to_point(const DeviceDraws::Place& place) const noexcept {
-  if (reach_ == 1.0) {
+  if (is_unit_) {
     return place;
   }
-  return {inverse_reach_ * place[0], inverse_reach_ * place[1], inverse_reach_ * place[2]};
+  return {inverse_reach_[0] * (place[0] - middle_[0]), inverse_reach_[1] * (place[1] - middle_[1]),
+          inverse_reach_[2] * (place[2] - middle_[2])};
 }
 
 bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noexcept {
   constexpr double kRounding = 1e-9;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (axes_[a] && !(abs(place[a]) <= reach_ * (1.0 + kRounding))) {
+    if (axes_[a] && !(abs(place[a] - middle_[a]) <= reach_[a] * (1.0 + kRounding))) {
       return false;
     }
   }
@@ -235,8 +311,14 @@ void EnergyBranches::start_refinement(const DeviceDraws& draws, std::size_t bran
                                       const Accelerometer& device,
                                       GridWorkspace& workspace) noexcept {
   pool_.load(branch, search_.duration_s, workspace.refinement(), workspace.signal());
+  begin_legs(draws.device_at(place_at(pool_.home(branch))), device, workspace);
+}
+
+/// Refines the workspace's signal along the way from one device to another.
+void EnergyBranches::begin_legs(const Accelerometer& home, const Accelerometer& device,
+                                GridWorkspace& workspace) noexcept {
+  home_ = home;
   target_ = device;
-  home_ = draws.device_at(place_at(pool_.home(branch)));
   legs_ = legs_between(home_, device);
   leg_ = 0;
   begin_leg(workspace);
@@ -340,7 +422,7 @@ void EnergyBranches::step_missing(const DeviceDraws& draws, GridWorkspace& works
 void EnergyBranches::end_places() noexcept {
   pool_.drop_low();
   origin_ = pool_.best_at(0);
-  if (reach_ < kLeastReach) {
+  if (is_whole() && reach_[0] < kLeastReach) {
     phase_ = Phase::kReady;
     return;
   }
@@ -421,14 +503,21 @@ void EnergyBranches::compare_branches() noexcept {
   }
 }
 
-double EnergyBranches::accepted_error(std::size_t branch, double part) const noexcept {
+/// The standard deviation of a branch's energy over the draws, nearly.
+double EnergyBranches::deviation_of(std::size_t branch) const noexcept {
   // A unit of a place has the variance 1, or that of a uniform number within +-1.
-  const double unit = is_normal_ ? inverse_reach_ : kInverseRoot3;
+  const double unit = is_normal_ ? 1.0 : kInverseRoot3;
+  const CubePoint slopes = cube_slopes(degree_, coefficients(branch));
   double variance = 0.0;
-  for (const double slope : cube_slopes(degree_, coefficients(branch))) {
-    variance += slope * unit * (slope * unit);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double slope = slopes[a] * (unit * inverse_reach_[a]);
+    variance += slope * slope;
   }
-  return std::max(kAcceptedError * abs(origin_), part * sqrt(variance));
+  return sqrt(variance);
+}
+
+double EnergyBranches::accepted_error(std::size_t branch, double part) const noexcept {
+  return std::max(kAcceptedError * abs(origin_), part * deviation_of(branch));
 }
 
 void EnergyBranches::end_checks() noexcept {

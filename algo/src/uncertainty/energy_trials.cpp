@@ -58,13 +58,113 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   cells_ = best.cells;
   is_exhausted_ = false;
   branches_.start(at_estimate, best, draws_, search_, gain_follows_);
+  const bool has_room = settings.pieces.size() >= kPieces;
+  pieces_ = has_room ? settings.pieces.first(kPieces) : Span<EnergyBranches>();
+  pieces_ready_ = 0;
+  piece_ = 0;
+  begun_piece_ = 0;
   return Status::kOk;
 }
 
 void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexcept {
-  if (!ready()) {
-    branches_.prepare(draws_, search, workspace);
+  if (ready()) {
+    return;
   }
+  if (!branches_.is_ready()) {
+    branches_.prepare(draws_, search, workspace);
+    return;
+  }
+  const BranchNotes notes = branches_.notes();
+  if (branches_.is_predicted() || notes.degree == 0) {
+    pieces_ = Span<EnergyBranches>();
+    return;
+  }
+  prepare_piece(workspace);
+}
+
+/// Parts of equal size: along f0 first, then along damping.
+void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
+  EnergyBranches& piece = pieces_[pieces_ready_];
+  if (begun_piece_ == pieces_ready_) {
+    ++begun_piece_;
+    constexpr double kF0 = 1.0 / static_cast<double>(kCutsOfFrequency);
+    constexpr double kDamping = 1.0 / static_cast<double>(kCutsOfDamping);
+    const auto of_f0 = static_cast<double>(2 * (pieces_ready_ % kCutsOfFrequency) + 1);
+    const auto of_damping = static_cast<double>(2 * (pieces_ready_ / kCutsOfFrequency) + 1);
+    piece.start_piece(branches_, {0.0, kF0 * of_f0 - 1.0, kDamping * of_damping - 1.0},
+                      {1.0, kF0, kDamping});
+    return;
+  }
+  piece.prepare_piece(branches_, draws_, workspace);
+  pieces_ready_ += piece.is_ready() ? 1U : 0U;
+}
+
+double EnergyTrials::progress() const noexcept {
+  if (is_paper()) {
+    return 1.0;
+  }
+  // Whether there will be pieces is known once the whole is ready.
+  constexpr double kWhole = 0.5;
+  const double whole = branches_.progress();
+  if (pieces_.empty() || ready()) {
+    return whole;
+  }
+  return kWhole * (whole + static_cast<double>(pieces_ready_) / static_cast<double>(kPieces));
+}
+
+bool EnergyTrials::predicts() const noexcept {
+  if (is_paper()) {
+    return false;
+  }
+  bool all = !pieces_.empty();
+  for (const EnergyBranches& piece : pieces_) {
+    all = all && piece.is_predicted();
+  }
+  return all || branches_.is_predicted();
+}
+
+double EnergyTrials::tolerance() const noexcept {
+  double tolerance = branches_.tolerance();
+  for (const EnergyBranches& piece : pieces_) {
+    tolerance = piece.tolerance() > tolerance ? piece.tolerance() : tolerance;
+  }
+  return tolerance;
+}
+
+BranchNotes EnergyTrials::notes() const noexcept {
+  BranchNotes notes = branches_.notes();
+  for (const EnergyBranches& piece : pieces_) {
+    const BranchNotes of_piece = piece.notes();
+    ++notes.pieces;
+    if (of_piece.predicted == of_piece.branches) {
+      ++notes.pieces_predicted;
+    }
+    notes.is_crowded = notes.is_crowded || of_piece.is_crowded;
+  }
+  return notes;
+}
+
+/// The polynomials that hold at a place: those of its piece, if there are pieces.
+EnergyBranches& EnergyTrials::branches_at(const DeviceDraws::Place& place) noexcept {
+  piece_ = 0;
+  if (pieces_.empty() || pieces_ready_ != pieces_.size() || !branches_.is_within_reach(place)) {
+    return branches_;
+  }
+  const CubePoint point = branches_.to_point(place);
+  const auto part = [](double x, std::size_t cuts) {
+    const double position = 0.5 * (x + 1.0) * static_cast<double>(cuts);
+    const std::size_t index = position > 0.0 ? static_cast<std::size_t>(position) : 0;
+    return index < cuts ? index : cuts - 1;
+  };
+  const std::size_t index =
+      part(point[1], kCutsOfFrequency) + kCutsOfFrequency * part(point[2], kCutsOfDamping);
+  piece_ = index + 1;
+  return pieces_[index];
+}
+
+/// The branches that the trial asks.
+EnergyBranches& EnergyTrials::asked() noexcept {
+  return piece_ == 0 ? branches_ : pieces_[piece_ - 1];
 }
 
 Accelerometer EnergyTrials::device(std::uint32_t trial) noexcept {
@@ -98,14 +198,15 @@ double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& works
   }
   const DeviceDraws::Place place = draws_.place_of(device);
   if (is_same(draws_.device_at(place), device, gain_follows_)) {
-    branches_.begin(place);
+    branches_at(place).begin(place);
   } else {
+    piece_ = 0;
     branches_.begin();
   }
-  done_ = branches_.done();
-  energy_ = branches_.energy();
+  done_ = asked().done();
+  energy_ = asked().energy();
   if (!done_) {
-    branches_.begin_refinement(draws_, device, workspace);
+    asked().begin_refinement(draws_, device, workspace);
   }
   return run(workspace);
 }
@@ -133,12 +234,13 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
     begin_fixed_point(draws_.device(), workspace);
     return;
   }
-  branches_.begin(draws_.place());
-  done_ = branches_.done();
-  energy_ = branches_.energy();
+  EnergyBranches& branches = branches_at(draws_.place());
+  branches.begin(draws_.place());
+  done_ = branches.done();
+  energy_ = branches.energy();
   if (!done_) {
-    branches_.begin_refinement(draws_, draws_.device(),
-                               workspace);  // Seldom, and only then needed.
+    // Seldom, and only then needed.
+    branches.begin_refinement(draws_, draws_.device(), workspace);
   }
 }
 
@@ -154,9 +256,10 @@ void EnergyTrials::begin_fixed_point(const Accelerometer& device,
 
 void EnergyTrials::step(GridWorkspace& workspace) noexcept {
   if (!is_paper()) {
-    branches_.step(draws_, workspace);
-    energy_ = branches_.energy();
-    done_ = branches_.done();
+    EnergyBranches& branches = asked();
+    branches.step(draws_, workspace);
+    energy_ = branches.energy();
+    done_ = branches.done();
     return;
   }
   PhiOperator phi;

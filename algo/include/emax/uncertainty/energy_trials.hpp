@@ -20,6 +20,9 @@ struct TrialSettings : DrawSettings {
   /// is left out. For figures in units of S, whose gain is S. Trials take as many numbers as else.
   bool holds_sensitivity = false;
   SearchSettings search;
+  /// Memory for polynomials of parts of the ranges, where those of the whole do not hold: nobody
+  /// else's while there are trials. None, or as many as `EnergyTrials::kPieces`.
+  Span<EnergyBranches> pieces;
 };
 
 /// The trials of Fig. 5, in any order: `DeviceDraws` draws the device of a trial.
@@ -41,6 +44,11 @@ struct TrialSettings : DrawSettings {
 /// 10.6 KiB beside the workspace.
 class EnergyTrials {
  public:
+  /// The ranges are cut into as many parts along f0, and along damping.
+  static constexpr std::size_t kCutsOfFrequency = 16;
+  static constexpr std::size_t kCutsOfDamping = 2;
+  static constexpr std::size_t kPieces = kCutsOfFrequency * kCutsOfDamping;
+
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
   /// @param[in] best        The search's result at the estimate, with the same search settings.
   /// @returns
@@ -58,9 +66,11 @@ class EnergyTrials {
   /// @param search    Nobody else's until `ready()`.
   /// @param workspace As for a search, without a store; once `ready()` there may be one in it.
   void prepare(EnergySearch& search, GridWorkspace& workspace) noexcept;
-  bool ready() const noexcept { return is_paper() || branches_.is_ready(); }
+  bool ready() const noexcept {
+    return is_paper() || (branches_.is_ready() && pieces_ready_ == pieces_.size());
+  }
   /// @returns From 0 to 1, of the preparation.
-  double progress() const noexcept { return is_paper() ? 1.0 : branches_.progress(); }
+  double progress() const noexcept;
 
   /// @returns The device of one trial; the estimate if there is none, see `is_exhausted()`.
   Accelerometer device(std::uint32_t trial) noexcept;
@@ -97,17 +107,24 @@ class EnergyTrials {
 
   const SearchSettings& search_settings() const noexcept { return search_; }
   /// @returns With `ready()`, whether polynomials answer all trials within their reach.
-  bool predicts() const noexcept { return !is_paper() && branches_.is_predicted(); }
+  bool predicts() const noexcept;
   /// @returns What a trial may be off by, as part of the energy.
-  double tolerance() const noexcept { return branches_.tolerance(); }
-  BranchNotes notes() const noexcept { return branches_.notes(); }
+  double tolerance() const noexcept;
+  BranchNotes notes() const noexcept;
 
  private:
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
+  void prepare_piece(GridWorkspace& workspace) noexcept;
+  EnergyBranches& asked() noexcept;
+  EnergyBranches& branches_at(const DeviceDraws::Place& place) noexcept;
   void begin_fixed_point(const Accelerometer& device, GridWorkspace& workspace) noexcept;
   double run(GridWorkspace& workspace) noexcept;
 
   EnergyBranches branches_ = {};
+  Span<EnergyBranches> pieces_;
+  std::size_t pieces_ready_ = 0;
+  std::size_t begun_piece_ = 0;  // How many are begun.
+  std::size_t piece_ = 0;        // Of the trial that is made, counted from 1; 0 for the whole.
   DeviceDraws draws_ = {};
   SearchSettings search_ = {};
   FixedPoint fixed_point_ = {};
