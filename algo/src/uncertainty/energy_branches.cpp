@@ -69,6 +69,7 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
   const double reach = draws.reach(is_normal_ ? kNormalReach : 1.0);
   is_unit_ = reach == 1.0;
   is_piece_ = false;
+  is_accurate_ = false;
   corner_ = is_normal_ ? kInverseRoot3 : 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
     axes_[a] = draws.moves(a, gain_follows);
@@ -124,6 +125,7 @@ void EnergyBranches::start_piece(const EnergyBranches& whole, const CubePoint& m
   middle_ = whole.from_point(middle);
   is_unit_ = false;
   is_piece_ = true;
+  is_accurate_ = false;
   corner_ = 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
     reach_[a] = half[a] * whole.reach_[a];
@@ -527,6 +529,7 @@ void EnergyBranches::end_checks() noexcept {
     begin_fit(degree_ + 1);
     return;
   }
+  is_accurate_ = is_predicted();
   accept(kAcceptedAtLast);
   phase_ = Phase::kReady;
 }
@@ -543,7 +546,8 @@ void EnergyBranches::accept(double part) noexcept {
 }
 
 bool EnergyBranches::can_raise_degree() const noexcept {
-  if (degree_ == kMaxCubeDegree || pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
+  if (is_piece_ || degree_ == kMaxCubeDegree ||
+      pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
     return false;
   }
   for (std::size_t b = 0; b < pool_.count(); ++b) {

@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kWorkOfDraws = 2;
 constexpr std::size_t kWorkOfPolynomial = 2;
 constexpr std::size_t kWorkOfRefinement = 32;
+/// Of a piece: damping against f0, in parts of their ranges.
+constexpr double kNarrow = 8.0;
 
 /// Whether two values are the same but for rounding of a place and back.
 bool is_same(double a, double b) noexcept {
@@ -58,11 +60,11 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   cells_ = best.cells;
   is_exhausted_ = false;
   branches_.start(at_estimate, best, draws_, search_, gain_follows_);
-  const bool has_room = settings.pieces.size() >= kPieces;
-  pieces_ = has_room ? settings.pieces.first(kPieces) : Span<EnergyBranches>();
+  pieces_ = settings.pieces.size() >= kFirstPieces ? settings.pieces : Span<TrialPiece>();
+  pieces_used_ = 0;
+  pieces_begun_ = 0;
   pieces_ready_ = 0;
   piece_ = 0;
-  begun_piece_ = 0;
   return Status::kOk;
 }
 
@@ -74,29 +76,68 @@ void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexc
     branches_.prepare(draws_, search, workspace);
     return;
   }
-  const BranchNotes notes = branches_.notes();
-  if (branches_.is_predicted() || notes.degree == 0) {
-    pieces_ = Span<EnergyBranches>();
+  if (branches_.is_predicted() || branches_.notes().degree == 0) {
+    pieces_ = Span<TrialPiece>();
     return;
+  }
+  if (pieces_used_ == 0) {
+    begin_pieces();
   }
   prepare_piece(workspace);
 }
 
-/// Parts of equal size: along f0 first, then along damping.
+/// Parts of equal size along f0.
+void EnergyTrials::begin_pieces() noexcept {
+  constexpr double kHalf = 1.0 / static_cast<double>(kFirstPieces);
+  for (std::size_t i = 0; i < kFirstPieces; ++i) {
+    TrialPiece& piece = pieces_[i];
+    piece.child = 0;
+    piece.middle = {0.0, kHalf * static_cast<double>(2 * i + 1) - 1.0, 0.0};
+    piece.half = {1.0, kHalf, 1.0};
+    piece.parent = 0;
+    piece.branches.start_piece(branches_, piece.middle, piece.half);
+  }
+  pieces_used_ = kFirstPieces;
+  pieces_begun_ = kFirstPieces;
+}
+
 void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
-  EnergyBranches& piece = pieces_[pieces_ready_];
-  if (begun_piece_ == pieces_ready_) {
-    ++begun_piece_;
-    constexpr double kF0 = 1.0 / static_cast<double>(kCutsOfFrequency);
-    constexpr double kDamping = 1.0 / static_cast<double>(kCutsOfDamping);
-    const auto of_f0 = static_cast<double>(2 * (pieces_ready_ % kCutsOfFrequency) + 1);
-    const auto of_damping = static_cast<double>(2 * (pieces_ready_ / kCutsOfFrequency) + 1);
-    piece.start_piece(branches_, {0.0, kF0 * of_f0 - 1.0, kDamping * of_damping - 1.0},
-                      {1.0, kF0, kDamping});
+  TrialPiece& piece = pieces_[pieces_ready_];
+  if (!piece.branches.is_ready()) {
+    const EnergyBranches& seeds =
+        piece.parent == 0 ? branches_ : pieces_[piece.parent - 1].branches;
+    piece.branches.prepare_piece(seeds, draws_, workspace);
     return;
   }
-  piece.prepare_piece(branches_, draws_, workspace);
-  pieces_ready_ += piece.is_ready() ? 1U : 0U;
+  if (is_worth_cutting(piece)) {
+    cut(piece);
+  }
+  ++pieces_ready_;
+}
+
+bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
+  return !piece.branches.is_accurate() && pieces_used_ + 2 <= pieces_.size();
+}
+
+/// Across f0, by which signals change most, unless it is narrow already.
+void EnergyTrials::cut(TrialPiece& piece) noexcept {
+  const bool is_narrow = kNarrow * piece.half[1] < piece.half[2];
+  piece.axis = is_narrow && branches_.axes()[2] ? 2 : 1;
+  piece.child = pieces_used_;
+  for (const double side : {-0.5, 0.5}) {
+    TrialPiece& child = pieces_[pieces_used_++];
+    CubePoint middle = {};
+    CubePoint half = {1.0, 1.0, 1.0};
+    middle[piece.axis] = side;
+    half[piece.axis] = 0.5;
+    child.child = 0;
+    child.parent = pieces_ready_ + 1;
+    child.middle = piece.middle;
+    child.middle[piece.axis] += side * piece.half[piece.axis];
+    child.half = piece.half;
+    child.half[piece.axis] *= 0.5;
+    child.branches.start_piece(piece.branches, middle, half);
+  }
 }
 
 double EnergyTrials::progress() const noexcept {
@@ -109,37 +150,43 @@ double EnergyTrials::progress() const noexcept {
   if (pieces_.empty() || ready()) {
     return whole;
   }
-  return kWhole * (whole + static_cast<double>(pieces_ready_) / static_cast<double>(kPieces));
+  // How many are cut is not known either: there is room for no more.
+  return kWhole *
+         (whole + static_cast<double>(pieces_ready_) / static_cast<double>(pieces_.size()));
 }
 
 bool EnergyTrials::predicts() const noexcept {
   if (is_paper()) {
     return false;
   }
-  bool all = !pieces_.empty();
-  for (const EnergyBranches& piece : pieces_) {
-    all = all && piece.is_predicted();
+  bool all = pieces_used_ != 0;
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    all = all && (piece.child != 0 || piece.branches.is_predicted());
   }
   return all || branches_.is_predicted();
 }
 
 double EnergyTrials::tolerance() const noexcept {
   double tolerance = branches_.tolerance();
-  for (const EnergyBranches& piece : pieces_) {
-    tolerance = piece.tolerance() > tolerance ? piece.tolerance() : tolerance;
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    if (piece.child == 0 && piece.branches.tolerance() > tolerance) {
+      tolerance = piece.branches.tolerance();
+    }
   }
   return tolerance;
 }
 
 BranchNotes EnergyTrials::notes() const noexcept {
   BranchNotes notes = branches_.notes();
-  for (const EnergyBranches& piece : pieces_) {
-    const BranchNotes of_piece = piece.notes();
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    if (piece.child != 0) {
+      continue;
+    }
     ++notes.pieces;
-    if (of_piece.predicted == of_piece.branches) {
+    if (piece.branches.is_predicted()) {
       ++notes.pieces_predicted;
     }
-    notes.is_crowded = notes.is_crowded || of_piece.is_crowded;
+    notes.is_crowded = notes.is_crowded || piece.branches.notes().is_crowded;
   }
   return notes;
 }
@@ -147,24 +194,24 @@ BranchNotes EnergyTrials::notes() const noexcept {
 /// The polynomials that hold at a place: those of its piece, if there are pieces.
 EnergyBranches& EnergyTrials::branches_at(const DeviceDraws::Place& place) noexcept {
   piece_ = 0;
-  if (pieces_.empty() || pieces_ready_ != pieces_.size() || !branches_.is_within_reach(place)) {
+  if (!is_cut() || !branches_.is_within_reach(place)) {
     return branches_;
   }
   const CubePoint point = branches_.to_point(place);
-  const auto part = [](double x, std::size_t cuts) {
-    const double position = 0.5 * (x + 1.0) * static_cast<double>(cuts);
-    const std::size_t index = position > 0.0 ? static_cast<std::size_t>(position) : 0;
-    return index < cuts ? index : cuts - 1;
-  };
-  const std::size_t index =
-      part(point[1], kCutsOfFrequency) + kCutsOfFrequency * part(point[2], kCutsOfDamping);
+  const double position = 0.5 * (point[1] + 1.0) * static_cast<double>(kFirstPieces);
+  std::size_t index = position > 0.0 ? static_cast<std::size_t>(position) : 0;
+  index = index < kFirstPieces ? index : kFirstPieces - 1;
+  for (std::size_t child = pieces_[index].child; child != 0; child = pieces_[index].child) {
+    const std::size_t axis = pieces_[index].axis;
+    index = child + (point[axis] < pieces_[index].middle[axis] ? 0 : 1);
+  }
   piece_ = index + 1;
-  return pieces_[index];
+  return pieces_[index].branches;
 }
 
 /// The branches that the trial asks.
 EnergyBranches& EnergyTrials::asked() noexcept {
-  return piece_ == 0 ? branches_ : pieces_[piece_ - 1];
+  return piece_ == 0 ? branches_ : pieces_[piece_ - 1].branches;
 }
 
 Accelerometer EnergyTrials::device(std::uint32_t trial) noexcept {

@@ -72,7 +72,9 @@ class EnergyBranches {
   /// Starts over with a part of the ranges: the signals are those of the whole, refined in the
   /// middle of the part, where each that stays another one begins a branch of its own. No searches.
   ///
-  /// @param[in] whole  `is_ready()`, with polynomials.
+  /// Polynomials of degree 4 only: where they fail, smaller pieces do better.
+  ///
+  /// @param[in] whole  `is_ready()`, with polynomials; it may be a piece itself.
   /// @param[in] middle Of the part, as a point of the whole's cube, and `half` its half-widths.
   void start_piece(const EnergyBranches& whole, const CubePoint& middle,
                    const CubePoint& half) noexcept;
@@ -109,6 +111,10 @@ class EnergyBranches {
   const std::array<bool, 3>& axes() const noexcept { return axes_; }
   /// True if no place within reach takes a refinement.
   bool is_predicted() const noexcept { return notes().predicted == pool_.count(); }
+
+  /// With `is_ready()`: true if all polynomials hold to 1e-10 of the energy or 1e-6 of its standard
+  /// deviation; those that are off by up to 1e-4 of it count as predicted only.
+  bool is_accurate() const noexcept { return is_accurate_; }
 
   /// The model with the device last set.
   const ModalModel& model() const noexcept { return model_; }
@@ -211,6 +217,7 @@ class EnergyBranches {
   bool is_normal_ = false;
   bool is_unit_ = false;  // A place is a point.
   bool is_piece_ = false;
+  bool is_accurate_ = false;
   bool is_refining_ = false;
   Phase phase_ = Phase::kReady;
 };

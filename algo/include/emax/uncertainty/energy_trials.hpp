@@ -13,6 +13,16 @@
 
 namespace emax {
 
+/// A part of the ranges with branches of its own, or cut in two. 10.5 KiB.
+struct TrialPiece {
+  EnergyBranches branches = {};
+  CubePoint middle = {};  ///< In the cube of the whole ranges.
+  CubePoint half = {};
+  std::size_t parent = 0;  ///< The piece that it is half of, counted from 1; 0 for none.
+  std::size_t axis = 0;    ///< That it is cut across,
+  std::size_t child = 0;   ///< into this piece and the next one; 0 if it is not.
+};
+
 struct TrialSettings : DrawSettings {
   bool gain_follows =
       false;  ///< The filter's gain is each trial's sensitivity, not the estimate's.
@@ -21,8 +31,9 @@ struct TrialSettings : DrawSettings {
   bool holds_sensitivity = false;
   SearchSettings search;
   /// Memory for polynomials of parts of the ranges, where those of the whole do not hold: nobody
-  /// else's while there are trials. None, or as many as `EnergyTrials::kPieces`.
-  Span<EnergyBranches> pieces;
+  /// else's while there are trials. None, or `EnergyTrials::kFirstPieces` and more; 96 are enough
+  /// for most.
+  Span<TrialPiece> pieces;
 };
 
 /// The trials of Fig. 5, in any order: `DeviceDraws` draws the device of a trial.
@@ -44,10 +55,8 @@ struct TrialSettings : DrawSettings {
 /// 10.6 KiB beside the workspace.
 class EnergyTrials {
  public:
-  /// The ranges are cut into as many parts along f0, and along damping.
-  static constexpr std::size_t kCutsOfFrequency = 16;
-  static constexpr std::size_t kCutsOfDamping = 2;
-  static constexpr std::size_t kPieces = kCutsOfFrequency * kCutsOfDamping;
+  /// The ranges are cut into as many parts along f0, and those in two where polynomials fail.
+  static constexpr std::size_t kFirstPieces = 8;
 
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
   /// @param[in] best        The search's result at the estimate, with the same search settings.
@@ -67,7 +76,7 @@ class EnergyTrials {
   /// @param workspace As for a search, without a store; once `ready()` there may be one in it.
   void prepare(EnergySearch& search, GridWorkspace& workspace) noexcept;
   bool ready() const noexcept {
-    return is_paper() || (branches_.is_ready() && pieces_ready_ == pieces_.size());
+    return is_paper() || (branches_.is_ready() && (pieces_.empty() || is_cut()));
   }
   /// @returns From 0 to 1, of the preparation.
   double progress() const noexcept;
@@ -114,17 +123,22 @@ class EnergyTrials {
 
  private:
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
+  bool is_cut() const noexcept { return pieces_begun_ != 0 && pieces_ready_ == pieces_used_; }
+  void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
+  void cut(TrialPiece& piece) noexcept;
+  bool is_worth_cutting(const TrialPiece& piece) const noexcept;
   EnergyBranches& asked() noexcept;
   EnergyBranches& branches_at(const DeviceDraws::Place& place) noexcept;
   void begin_fixed_point(const Accelerometer& device, GridWorkspace& workspace) noexcept;
   double run(GridWorkspace& workspace) noexcept;
 
   EnergyBranches branches_ = {};
-  Span<EnergyBranches> pieces_;
+  Span<TrialPiece> pieces_;
+  std::size_t pieces_used_ = 0;
+  std::size_t pieces_begun_ = 0;
   std::size_t pieces_ready_ = 0;
-  std::size_t begun_piece_ = 0;  // How many are begun.
-  std::size_t piece_ = 0;        // Of the trial that is made, counted from 1; 0 for the whole.
+  std::size_t piece_ = 0;  // Of the trial that is made, counted from 1; 0 for the whole.
   DeviceDraws draws_ = {};
   SearchSettings search_ = {};
   FixedPoint fixed_point_ = {};
