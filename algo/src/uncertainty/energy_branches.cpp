@@ -69,6 +69,7 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
   const double reach = draws.reach(is_normal_ ? kNormalReach : 1.0);
   is_unit_ = reach == 1.0;
   is_piece_ = false;
+  has_pieces_ = false;
   is_accurate_ = false;
   corner_ = is_normal_ ? kInverseRoot3 : 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -196,7 +197,7 @@ double EnergyBranches::progress() const noexcept {
       return kSearches;
     case Phase::kNodes:
       return kSearches + (kNodes - kSearches) * static_cast<double>(point_) /
-                             static_cast<double>(CubeNodes(degree_, axes_).size());
+                             static_cast<double>(nodes().size());
     case Phase::kChecks:
       return kNodes + (1.0 - kNodes) * static_cast<double>(point_) / static_cast<double>(kChecks);
     case Phase::kReady:
@@ -297,6 +298,16 @@ bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noex
     }
   }
   return true;
+}
+
+double EnergyBranches::share_of_draws(std::size_t axis, double middle, double half) const noexcept {
+  if (!is_normal_) {
+    return half;
+  }
+  constexpr double kInverseRootOfHalfTurn = 0.79788456080286536;  // 2 over the root of 2 pi.
+  const double place = reach_[axis] * std::max(abs(middle) - half, 0.0);
+  const double share = kInverseRootOfHalfTurn * (reach_[axis] * half) * exp(-0.5 * place * place);
+  return std::min(share, 1.0);
 }
 
 std::size_t EnergyBranches::legs_between(const Accelerometer& from,
@@ -440,6 +451,10 @@ void EnergyBranches::begin_fit(std::size_t degree) noexcept {
   for (Fit& fit : fits_) {
     fit = Fit();
     fit.nearest = std::numeric_limits<double>::infinity();
+    fit.nearest_other = fit.nearest;
+  }
+  for (std::uint32_t& sets : best_sets_) {
+    sets = 0;
   }
   point_ = 0;
   branch_ = 0;
@@ -447,7 +462,7 @@ void EnergyBranches::begin_fit(std::size_t degree) noexcept {
 }
 
 void EnergyBranches::step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
-  const CubeNodes nodes(degree_, axes_);
+  const CubeNodes nodes = this->nodes();
   if (!refine_at(draws, from_point(nodes.point(point_)), workspace)) {
     return;
   }
@@ -500,9 +515,38 @@ void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& worksp
 /// How far each branch is below the best at a point where all have been refined.
 void EnergyBranches::compare_branches() noexcept {
   const double best = *std::max_element(energies_, energies_ + pool_.count());
+  std::uint32_t set = 0;
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    fits_[b].nearest = std::min(fits_[b].nearest, (best - energies_[b]) / abs(best));
+    const double below = (best - energies_[b]) / abs(best);
+    fits_[b].nearest = std::min(fits_[b].nearest, below);
+    if (below <= kSame) {
+      set |= 1U << b;
+    } else {
+      fits_[b].nearest_other = std::min(fits_[b].nearest_other, below);
+    }
   }
+  best_sets_[set / 32] |= std::uint32_t{1} << (set % 32);
+}
+
+/// Branches, a bit each, of which one is the best at all points: those that are it alone, and of
+/// several that have become the same signal the one whose polynomial is the best.
+std::uint32_t EnergyBranches::needed() const noexcept {
+  std::uint32_t needed = 0;
+  for (const bool alone : {true, false}) {
+    for (std::uint32_t set = 1; set < (1U << pool_.count()); ++set) {
+      const bool is_alone = (set & (set - 1)) == 0;
+      const bool occurs = (best_sets_[set / 32] >> (set % 32) & 1U) != 0;
+      if (!occurs || is_alone != alone || (set & needed) != 0) {
+        continue;
+      }
+      std::size_t best = static_cast<std::size_t>(__builtin_ctz(set));
+      for (std::size_t b = best + 1; b < pool_.count(); ++b) {
+        best = (set >> b & 1U) != 0 && fits_[b].error < fits_[best].error ? b : best;
+      }
+      needed |= 1U << best;
+    }
+  }
+  return needed;
 }
 
 /// The standard deviation of a branch's energy over the draws, nearly.
@@ -550,19 +594,32 @@ bool EnergyBranches::can_raise_degree() const noexcept {
       pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
     return false;
   }
+  bool has_hope = false;
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    if (fits_[b].has_failed &&
-        fits_[b].error <= kMostHope * accepted_error(b, kAcceptedDeviation)) {
-      return true;
+    if (fits_[b].has_failed) {
+      const bool hope = fits_[b].error <= kMostHope * accepted_error(b, kAcceptedDeviation);
+      if (has_pieces_ && !hope) {
+        return false;
+      }
+      has_hope = has_hope || hope;
     }
   }
-  return false;
+  return has_hope;
+}
+
+/// In a piece of a box three nodes are enough along the sensitivity: a signal's energy is a
+/// quadratic function of it, and the signal changes little.
+CubeNodes EnergyBranches::nodes() const noexcept {
+  return CubeNodes(degree_, axes_, is_piece_ && !is_normal_ ? 3 : degree_ + 1);
 }
 
 void EnergyBranches::drop_low() noexcept {
   const double room = kRoomBetweenNodes * pool_.variation() + kSame;
+  // In a piece a branch may end: from there on it is another one, and no loss.
+  const std::uint32_t kept = is_piece_ ? needed() : ~std::uint32_t{0};
   for (std::size_t b = pool_.count(); b-- > 0;) {
-    if (fits_[b].nearest > room) {
+    const bool is_needed = (kept >> b & 1U) != 0;
+    if ((is_needed ? fits_[b].nearest : fits_[b].nearest_other) > room) {
       remove(b);
     }
   }

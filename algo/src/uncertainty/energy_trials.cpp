@@ -15,6 +15,9 @@ constexpr std::size_t kWorkOfPolynomial = 2;
 constexpr std::size_t kWorkOfRefinement = 32;
 /// Of a piece: damping against f0, in parts of their ranges.
 constexpr double kNarrow = 8.0;
+/// The share of the draws in a piece. To cut it costs some 500 refinements, as much as a part of
+/// 2e5 trials in it would.
+constexpr double kWorthCutting = 1.0 / 256.0;
 
 /// Whether two values are the same but for rounding of a place and back.
 bool is_same(double a, double b) noexcept {
@@ -61,6 +64,9 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   is_exhausted_ = false;
   branches_.start(at_estimate, best, draws_, search_, gain_follows_);
   pieces_ = settings.pieces.size() >= kFirstPieces ? settings.pieces : Span<TrialPiece>();
+  if (!pieces_.empty()) {
+    branches_.expect_pieces();
+  }
   pieces_used_ = 0;
   pieces_begun_ = 0;
   pieces_ready_ = 0;
@@ -116,7 +122,15 @@ void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
 }
 
 bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
-  return !piece.branches.is_accurate() && pieces_used_ + 2 <= pieces_.size();
+  if (piece.branches.is_accurate() || pieces_used_ + 2 > pieces_.size()) {
+    return false;
+  }
+  double share = 1.0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    share *=
+        branches_.axes()[a] ? branches_.share_of_draws(a, piece.middle[a], piece.half[a]) : 1.0;
+  }
+  return share > kWorthCutting;
 }
 
 /// Across f0, by which signals change most, unless it is narrow already.

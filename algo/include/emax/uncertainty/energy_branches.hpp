@@ -61,6 +61,9 @@ class EnergyBranches {
   void start(const ModalModel& at_estimate, const MaximumEnergy& best, const DeviceDraws& draws,
              const SearchSettings& search, bool gain_follows) noexcept;
 
+  /// Says that pieces will follow where a polynomial fails, so that no degree is tried in vain.
+  void expect_pieces() noexcept { has_pieces_ = true; }
+
   /// Does a step of a search or of a refinement.
   ///
   /// @param[in] draws     The same in each call, as `workspace`.
@@ -107,6 +110,8 @@ class EnergyBranches {
   /// True if the polynomials reach as far as this place.
   bool is_within_reach(const DeviceDraws::Place& place) const noexcept;
   CubePoint to_point(const DeviceDraws::Place& place) const noexcept;
+  /// The share of the draws that are within `half` of a point of an axis, nearly.
+  double share_of_draws(std::size_t axis, double middle, double half) const noexcept;
   /// The axes of the cube along which the device changes.
   const std::array<bool, 3>& axes() const noexcept { return axes_; }
   /// True if no place within reach takes a refinement.
@@ -134,9 +139,10 @@ class EnergyBranches {
 
   /// What is known of a branch's polynomial.
   struct Fit {
-    double error = 0.0;        // The largest found,
-    double inner_error = 0.0;  // and that in the middle.
-    double nearest = 0.0;      // To the best of all, at nodes and checks.
+    double error = 0.0;          // The largest found,
+    double inner_error = 0.0;    // and that in the middle.
+    double nearest = 0.0;        // To the best of all, at nodes and checks,
+    double nearest_other = 0.0;  // and where it is another signal than that.
     bool has_failed = false;
   };
 
@@ -169,7 +175,9 @@ class EnergyBranches {
   void end_fit() noexcept;
   void end_checks() noexcept;
   bool can_raise_degree() const noexcept;
+  CubeNodes nodes() const noexcept;
   void compare_branches() noexcept;
+  std::uint32_t needed() const noexcept;
   void remove(std::size_t branch) noexcept;
   void drop_low() noexcept;
   void accept(double part) noexcept;
@@ -191,6 +199,8 @@ class EnergyBranches {
   double coefficients_[kCoefficients] = {};
   double energies_[kBranches] = {};  // At the point that is worked on.
   Fit fits_[kBranches] = {};
+  // Which sets of branches, a bit each, have been the best together: a bit for each set.
+  std::uint32_t best_sets_[(std::size_t{1} << kBranches) / 32] = {};
   Refiner refiner_ = {};
   SearchSettings search_ = {};
   Accelerometer estimate_ = {};
@@ -218,6 +228,7 @@ class EnergyBranches {
   bool is_unit_ = false;  // A place is a point.
   bool is_piece_ = false;
   bool is_accurate_ = false;
+  bool has_pieces_ = false;
   bool is_refining_ = false;
   Phase phase_ = Phase::kReady;
 };
