@@ -507,7 +507,7 @@ void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& worksp
   do {
     ++point_;
   } while (point_ < kCorners && !is_corner(point_));
-  if (point_ == kChecks) {
+  if (point_ == checks()) {
     end_checks();
   }
 }

@@ -135,6 +135,7 @@ class EnergyBranches {
   static constexpr std::size_t kPlaces = BranchPool::kPlaces;
   static constexpr std::size_t kCorners = kPlaces - 1;
   static constexpr std::size_t kChecks = kCorners + 30;
+  static constexpr std::size_t kChecksOfPiece = kCorners + 12;
   static constexpr std::size_t kCoefficients = 336;  // 8 of degree 4, 6 of 5, 4 of 6.
 
   /// What is known of a branch's polynomial.
@@ -176,6 +177,7 @@ class EnergyBranches {
   void end_checks() noexcept;
   bool can_raise_degree() const noexcept;
   CubeNodes nodes() const noexcept;
+  std::size_t checks() const noexcept { return is_piece_ ? kChecksOfPiece : kChecks; }
   void compare_branches() noexcept;
   std::uint32_t needed() const noexcept;
   void remove(std::size_t branch) noexcept;

@@ -57,6 +57,8 @@ class EnergyTrials {
  public:
   /// The ranges are cut into as many parts along f0, and those in two where polynomials fail.
   static constexpr std::size_t kFirstPieces = 8;
+  /// Enough for most: 1.1 MB.
+  static constexpr std::size_t kManyPieces = 96;
 
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
   /// @param[in] best        The search's result at the estimate, with the same search settings.
