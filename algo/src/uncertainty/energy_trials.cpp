@@ -181,7 +181,7 @@ bool EnergyTrials::predicts() const noexcept {
 }
 
 double EnergyTrials::tolerance() const noexcept {
-  double tolerance = branches_.tolerance();
+  double tolerance = pieces_used_ == 0 ? branches_.tolerance() : 0.0;
   for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
     if (piece.child == 0 && piece.branches.tolerance() > tolerance) {
       tolerance = piece.branches.tolerance();
