@@ -91,6 +91,7 @@ Status Evaluation::pursue(const Settings& settings, Goal goal) noexcept {
 void Evaluation::begin_run(Goal goal) noexcept {
   work_.goal_ = goal;
   work_.store_ = {};
+  work_.pieces_ = {};
   work_.stored_ = 0;
   work_.trial_runs_ = false;
   work_.trend_search_runs_ = false;
@@ -134,6 +135,8 @@ void Evaluation::drop_incomplete() noexcept {
     results_.drop_trend();
   }
 }
+
+void Evaluation::lend_trial_pieces(Span<TrialPiece> pieces) noexcept { work_.pieces_ = pieces; }
 
 void Evaluation::lend_trial_store(Span<double> store) noexcept {
   work_.store_ = store;

@@ -258,6 +258,7 @@ void Evaluation::begin_trials() noexcept {
   trial_settings.generator = seeded_generator();
   trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings, settings.duration_s);
+  trial_settings.pieces = work_.pieces_;
   auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
   const Status status = part->trials.start(results_.model, results_.maximum, trial_settings);
   if (status != Status::kOk) {

@@ -164,6 +164,7 @@ Refusal Sequencer::evaluate(const Settings& settings, Goal goal) noexcept {
     return {Obstacle::kEvaluation, status};
   }
   evaluation_run().lend_trial_store(trial_store_);
+  evaluation_run().lend_trial_pieces(trial_pieces_);
   goal_ = goal;
   begin(Job::kEvaluation);
   if (evaluation_.done()) {

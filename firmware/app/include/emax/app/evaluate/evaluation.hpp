@@ -95,6 +95,11 @@ class Evaluation {
   /// trials. After a start, until the evaluation is done.
   void lend_trial_store(Span<double> store) noexcept;
 
+  /// Lends memory for the polynomials of parts of the ranges (`TrialSettings::pieces`): with it
+  /// trials of devices with many switches take microseconds, without it each may be a refinement.
+  /// After a start, until the evaluation is done.
+  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept;
+
   /// The number of draws for the covariance of the fit.
   static constexpr std::uint32_t kFitDraws = 10000;
   /// The fraction of the peak of k within which it has settled.

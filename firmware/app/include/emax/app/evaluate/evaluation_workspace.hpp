@@ -56,6 +56,7 @@ class EvaluationWorkspace {
   };
 
   Span<double> store_;
+  Span<TrialPiece> pieces_;
   double progress_ = 0.0;
   std::uint32_t stored_ = 0;  // Trials 0 to stored_ - 1 are in the store.
   std::uint32_t trials_ = 0;
