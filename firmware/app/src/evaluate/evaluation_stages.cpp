@@ -58,6 +58,12 @@ void Evaluation::step_stage() noexcept {
     case Stage::kGuard:
       step_guard();
       return;
+    case Stage::kIdeal:
+    case Stage::kBand:
+    case Stage::kMatched:
+    case Stage::kUncertainty:
+      step_figure();
+      return;
     case Stage::kTrend:
       step_trend();
       return;
@@ -81,12 +87,14 @@ double Evaluation::progress_of_stage() const noexcept {
     case Stage::kAdaptive:
       return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
-      // With a store that holds all trials only the first pass takes time.
-      return work_.store_.size() < work_.trials_
-                 ? work_.part_.trial.monte_carlo.progress()
-                 : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
+      return progress_of_trials();
     case Stage::kGuard:
       return work_.guard_.progress();
+    case Stage::kIdeal:
+    case Stage::kBand:
+    case Stage::kMatched:
+    case Stage::kUncertainty:
+      return progress_of_figure();
     case Stage::kTrend: {
       const double running = work_.trend_search_runs_ ? work_.search_.progress() : 0.0;
       return (static_cast<double>(results_.trend_count) + running) /
@@ -99,6 +107,13 @@ double Evaluation::progress_of_stage() const noexcept {
       return work_.progress_;
   }
   return work_.progress_;
+}
+
+double Evaluation::progress_of_trials() const noexcept {
+  // With a store that holds all trials only the first pass takes time.
+  return work_.store_.size() < work_.trials_
+             ? work_.part_.trial.monte_carlo.progress()
+             : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
 }
 
 // The scatter of a mean over blocks falls with the root of their number: that says how many it
@@ -245,10 +260,23 @@ void Evaluation::step_bound() noexcept {
 
 void Evaluation::begin_trials() noexcept {
   const Settings& settings = results_.settings;
+  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
+  work_.stored_ = 0;
+  const Status status =
+      part->trials.start(results_.model, results_.maximum, trial_settings(settings.distribution));
+  if (status != Status::kOk) {
+    (void)fail(failure_of_width(status, settings.distribution));
+    return;
+  }
+  results_.stage = Stage::kPrediction;
+}
+
+TrialSettings Evaluation::trial_settings(Distribution distribution) const noexcept {
+  const Settings& settings = results_.settings;
   const ParameterBox& u = results_.device.u;
   TrialSettings trial_settings;
   const double scale = results_.trial_scale();
-  trial_settings.distribution = settings.distribution;
+  trial_settings.distribution = distribution;
   trial_settings.box = {scale * u.sensitivity, scale * u.natural_frequency_hz, scale * u.damping};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -258,13 +286,7 @@ void Evaluation::begin_trials() noexcept {
   trial_settings.generator = seeded_generator();
   trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings, settings.duration_s);
-  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
-  const Status status = part->trials.start(results_.model, results_.maximum, trial_settings);
-  if (status != Status::kOk) {
-    (void)fail(failure_of_width(status, settings.distribution));
-    return;
-  }
-  results_.stage = Stage::kPrediction;
+  return trial_settings;
 }
 
 void Evaluation::step_prediction() noexcept {
@@ -326,6 +348,7 @@ void Evaluation::run_slice() noexcept {
         ++work_.stored_;
       }
     }
+    note_root(value);
     if (adapts) {
       part.adaptive.add(value, part.monte_carlo, store);
     } else {
