@@ -90,7 +90,7 @@ Failure check_grids(const EvaluationResults& results, const Settings& settings,
     const bool is_energy = i == 0;
     const double duration_s = is_energy ? settings.duration_s : settings.trend_s[i - 1];
     const std::size_t cells = search_cells(results.model, search_settings(settings, duration_s));
-    if (cells > kMaxCells) {
+    if (cells > kMaxCells && (is_energy || !adapts_trend(settings))) {
       return failure_of_search(Status::kTooManyCells, settings.method,
                                is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
     }
@@ -186,6 +186,10 @@ ErrorMeasure measure_of(const Settings& settings) noexcept {
 
 bool needs_trials(Goal goal, const Settings& settings) noexcept {
   return wants_trials(goal) || (goal == Goal::kUncertainty && settings.adaptive);
+}
+
+bool adapts_trend(const Settings& settings) noexcept {
+  return is_same_trend(settings, kDefaultSettings);
 }
 
 SearchSettings search_settings(const Settings& settings, double duration_s) noexcept {

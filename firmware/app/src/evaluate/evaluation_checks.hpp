@@ -52,6 +52,10 @@ ErrorMeasure measure_of(const Settings& settings) noexcept;
 /// adaptive.
 bool needs_trials(Goal goal, const Settings& settings) noexcept;
 
+/// @returns Whether a length of the trend is left out where it needs more cells or switches than
+/// there is room for: of the default trend, which nobody has asked for.
+bool adapts_trend(const Settings& settings) noexcept;
+
 /// The settings of a search for this time.
 SearchSettings search_settings(const Settings& settings, double duration_s) noexcept;
 

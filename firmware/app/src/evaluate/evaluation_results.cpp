@@ -95,6 +95,8 @@ void EvaluationResults::drop_trials() noexcept {
 
 void EvaluationResults::drop_trend() noexcept {
   trend_count = 0;
+  trend_looked_at = 0;
+  trend_left_out = 0;
   has_trend = false;
 }
 

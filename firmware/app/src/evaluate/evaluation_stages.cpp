@@ -97,7 +97,7 @@ double Evaluation::progress_of_stage() const noexcept {
       return progress_of_figure();
     case Stage::kTrend: {
       const double running = work_.trend_search_runs_ ? work_.search_.progress() : 0.0;
-      return (static_cast<double>(results_.trend_count) + running) /
+      return (static_cast<double>(results_.trend_looked_at) + running) /
              static_cast<double>(results_.settings.trend_count);
     }
     case Stage::kIdle:
@@ -421,17 +421,24 @@ void Evaluation::step_guard() noexcept {
 }
 
 void Evaluation::step_trend() noexcept {
-  const double duration_s = results_.settings.trend_s[results_.trend_count];
+  const double duration_s = results_.settings.trend_s[results_.trend_looked_at];
   if (!work_.trend_search_runs_) {
     if (duration_s == results_.settings.duration_s) {
       add_trend_point(results_.energy_v2s());
       return;
     }
-    work_.trend_search_runs_ = begin_search(Stage::kTrend, duration_s);
+    const Status status =
+        work_.search_.start(results_.model, search_settings(results_.settings, duration_s));
+    if (!leaves_out(status)) {
+      work_.trend_search_runs_ = is_well(status, Stage::kTrend, duration_s);
+    }
     return;
   }
   EnergySearch& search = work_.search_;
   const Status status = search.step(results_.model, work_.grid_);
+  if (leaves_out(status)) {
+    return;
+  }
   if (is_well(status, Stage::kTrend, duration_s) && search.done()) {
     work_.trend_search_runs_ = false;
     add_trend_point(results_.a2() * search.result().energy);
@@ -440,20 +447,47 @@ void Evaluation::step_trend() noexcept {
 
 void Evaluation::add_trend_point(double energy_v2s) noexcept {
   const Settings& settings = results_.settings;
-  results_.trend_table[results_.trend_count] = {settings.trend_s[results_.trend_count], energy_v2s};
+  results_.trend_table[results_.trend_count] = {settings.trend_s[results_.trend_looked_at],
+                                                energy_v2s};
   ++results_.trend_count;
-  if (results_.trend_count == settings.trend_count) {
+  ++results_.trend_looked_at;
+  if (results_.trend_looked_at == settings.trend_count) {
     end_trend();
   }
 }
 
+/// @returns Whether this time is left out for what its search answered; the next one is then due.
+bool Evaluation::leaves_out(Status of_search) noexcept {
+  const bool is_too_long =
+      of_search == Status::kTooManyCells || of_search == Status::kTooManySwitches;
+  if (!is_too_long || !adapts_trend(results_.settings)) {
+    return false;
+  }
+  work_.trend_search_runs_ = false;
+  results_.trend_left_out |= std::uint32_t{1} << results_.trend_looked_at;
+  ++results_.trend_looked_at;
+  if (results_.trend_looked_at == results_.settings.trend_count) {
+    end_trend();
+  }
+  return true;
+}
+
 void Evaluation::end_trend() noexcept {
   double energy_v2s[kMaxTrendPoints];
+  double time_s[kMaxTrendPoints];
+  if (results_.trend_left_out != 0 && results_.trend_count < 2) {
+    results_.trend_count = 0;  // No line.
+    results_.trend = {};
+    results_.has_trend = true;
+    results_.stage = Stage::kDone;
+    return;
+  }
   for (std::size_t i = 0; i < results_.trend_count; ++i) {
     energy_v2s[i] = results_.trend_table[i].energy_v2s;
+    time_s[i] = results_.trend_table[i].duration_s;
   }
-  const Span<const double> times_s(results_.settings.trend_s.data(), results_.trend_count);
-  results_.trend = linear_trend(times_s, Span<const double>(energy_v2s, results_.trend_count));
+  results_.trend = linear_trend(Span<const double>(time_s, results_.trend_count),
+                                Span<const double>(energy_v2s, results_.trend_count));
   if (results_.trend.status != Status::kOk) {
     (void)fail({results_.trend.status, Stage::kTrend, explain(results_.trend.status)});
     return;

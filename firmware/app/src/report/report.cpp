@@ -593,11 +593,29 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
 
 // Trend
 
+void write_left_out(const EvaluationResults& results, ReportWriter& out) noexcept {
+  if (results.trend_left_out == 0) {
+    return;
+  }
+  out.part(ReportPart::kNote).text("  Note: left out, as they need more than ");
+  out.integer(kMaxSwitches).text(" switches or ").integer(kMaxCells).text(" cells: T =");
+  bool is_first = true;
+  for (std::size_t i = 0; i < results.settings.trend_count; ++i) {
+    if ((results.trend_left_out >> i & 1U) != 0) {
+      out.text(is_first ? " " : ", ").general(kMilli * results.settings.trend_s[i], 8);
+      is_first = false;
+    }
+  }
+  out.text(" ms.\n");
+}
+
 void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   const Span<const TrendPoint> points = results.trend_points();
   out.heading(ReportSection::kTrend, "TREND (maximum energy at the estimates against T)");
   if (points.empty()) {
-    out.part(ReportPart::kText).text("  Not asked for.\n");
+    out.part(ReportPart::kText);
+    out.text(results.trend_left_out == 0 ? "  Not asked for.\n" : "  No line: too few lengths.\n");
+    write_left_out(results, out);
     return;
   }
   const Trend& trend = results.trend;
@@ -616,6 +634,7 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   out.text(trend.intercept < 0.0 ? "- " : "+ ").general(abs(trend.intercept), 7).text(" V^2 s");
   out.line();
   out.label("Correlation").fixed(trend.correlation, 7).line();
+  write_left_out(results, out);
   if (abs(trend.correlation) < kLeastTrendCorrelation) {
     out.part(ReportPart::kNote)
         .text("  Note: E is not linear in T here; the line says nothing about other lengths.\n");

@@ -155,6 +155,7 @@ class Evaluation {
   TrialSettings trial_settings(Distribution distribution) const noexcept;
   void step_trend() noexcept;
   void add_trend_point(double energy_v2s) noexcept;
+  bool leaves_out(Status of_search) noexcept;
   void end_trend() noexcept;
 
   EvaluationResults& results_;

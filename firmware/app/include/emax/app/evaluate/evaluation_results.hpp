@@ -143,6 +143,9 @@ struct EvaluationResults {
   bool has_trend = false;
   std::size_t trace_count = 0;
   std::size_t trend_count = 0;
+  std::uint32_t trend_looked_at = 0;  ///< Times of the trend, from the first.
+  /// A bit for each time of the trend that needs more cells or switches than there is room for.
+  std::uint32_t trend_left_out = 0;
   Failure failure;
   Device device;
   double limit_mps2 = 0.0;  ///< a.
