@@ -204,6 +204,9 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   kicks_ = 1 + (starts_ / kStarts) * kKicks;
   climbs_ = paper ? 1 : starts_ + kicks_ + kPolishings;
   tables_filled_ = 0;
+  turns_ = 0;
+  iterations_ = 0;
+  at_rest_ = false;
   modes_ = model.modes().size();
   phase_ = paper ? Phase::kPaperStart : Phase::kStart;
   has_result_ = false;

@@ -25,6 +25,15 @@ bool is_same(const Accelerometer& a, const Accelerometer& b, bool without_sensit
          is_same(a.natural_frequency_hz, b.natural_frequency_hz) && is_same(a.damping, b.damping);
 }
 
+/// Leaves S no uncertainty.
+void hold_sensitivity(DrawSettings& settings) noexcept {
+  settings.box.sensitivity = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    settings.covariance[0][i] = 0.0;
+    settings.covariance[i][0] = 0.0;
+  }
+}
+
 }  // namespace
 
 Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& best,
@@ -35,7 +44,11 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   if (settings.search.method == Method::kPaper && best.cells > GridWorkspace::kMaxTrialCells) {
     return Status::kTooManyCells;
   }
-  const Status status = draws_.start(at_estimate.device(), settings);
+  DrawSettings drawn = settings;
+  if (settings.holds_sensitivity) {
+    hold_sensitivity(drawn);
+  }
+  const Status status = draws_.start(at_estimate.device(), drawn);
   if (status != Status::kOk) {
     return status;
   }

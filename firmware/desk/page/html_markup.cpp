@@ -82,6 +82,12 @@ void append_quoted(std::string& html, const char* text) {
   }
 }
 
+std::string quoted(const char* text) {
+  std::string html;
+  append_quoted(html, text);
+  return html;
+}
+
 void append_words(std::string& html, std::string_view words) {
   for (; !words.empty(); words.remove_prefix(1)) {
     const std::string_view two = words.substr(0, 2);

@@ -10,6 +10,7 @@
 #include "emax/model/accelerometer.hpp"
 
 #include "desk/cli/console.hpp"
+#include "desk/pictures/axis_scale.hpp"
 #include "desk/pictures/gnuplot.hpp"
 
 namespace emax::desk {
@@ -137,35 +138,6 @@ std::string title_lines(const std::string& first, const std::string& second,
 }
 
 // Axes
-
-// What numbers of an axis are multiplied by, and the unit that they have then.
-struct Scale {
-  double factor;
-  std::string unit;
-};
-
-int thousands_of(double largest) {
-  const double size = std::abs(largest);
-  return size > 0.0 ? static_cast<int>(std::floor(std::log10(size) / 3.0 + 1e-9)) : 0;
-}
-
-std::string superscript(int exponent) {
-  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = exponent < 0 ? "⁻" : "";
-  for (const char digit : std::to_string(std::abs(exponent))) {
-    text += kDigits[digit - '0'];
-  }
-  return text;
-}
-
-// Below 1000 and from `plain` on there is no power of ten.
-Scale scaled(double largest, const std::string& unit, double plain = 1.0) {
-  const int exponent = 3 * thousands_of(largest);
-  if (exponent == 0 || (exponent < 0 && std::abs(largest) >= plain)) {
-    return {1.0, unit};
-  }
-  return {std::pow(10.0, -exponent), "10" + superscript(exponent) + " " + unit};
-}
 
 // The same for units that have prefixes.
 Scale prefixed(double largest, const std::string& unit) {

@@ -409,6 +409,32 @@ TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivit
   EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, workspace), at_double);
 }
 
+TEST(EnergyTrials, WithAHeldSensitivityOnlyFrequencyAndDampingAreDrawn) {
+  for (const Distribution distribution : {Distribution::kBox, Distribution::kNormal}) {
+    TrialSettings settings = normal_settings(2e-3);  // S is correlated with the others.
+    settings.distribution = distribution;
+    settings.holds_sensitivity = true;
+    ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+    EXPECT_TRUE(trials.predicts());
+    const SwitchingSignal best_signal = best.signal;
+    double f0_squares = 0.0;
+    for (std::uint32_t t = 0; t < 1000; ++t) {
+      const Accelerometer device = trials.device(t);
+      ASSERT_EQ(device.sensitivity, kPaperDevice.sensitivity);
+      const double from_f0 = device.natural_frequency_hz - kPaperDevice.natural_frequency_hz;
+      f0_squares += from_f0 * from_f0;
+      ModalModel moved = paper_model();
+      ASSERT_EQ(moved.set_device(device), Status::kOk);
+      SwitchingSignal signal = best_signal;
+      const double expected = refine(moved, signal, workspace.refinement()).energy;
+      ASSERT_NEAR(trials.energy(t, workspace), expected, 2.0 * trials.tolerance() * expected) << t;
+    }
+    // The variance of f0 is as without holding S; that of 1000 draws is within 4 times 4.5 %.
+    const double variance = distribution == Distribution::kBox ? 36.0 / 3.0 : 36.0;
+    EXPECT_NEAR(f0_squares / 1000.0, variance, 0.18 * variance);
+  }
+}
+
 TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);

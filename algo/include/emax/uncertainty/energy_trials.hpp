@@ -16,6 +16,9 @@ namespace emax {
 struct TrialSettings : DrawSettings {
   bool gain_follows =
       false;  ///< The filter's gain is each trial's sensitivity, not the estimate's.
+  /// S stays at its estimate, and only f0 and beta are drawn: whatever box or covariance say of S
+  /// is left out. For figures in units of S, whose gain is S. Trials take as many numbers as else.
+  bool holds_sensitivity = false;
   SearchSettings search;
 };
 

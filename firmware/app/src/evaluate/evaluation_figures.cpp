@@ -192,13 +192,7 @@ void Evaluation::begin_figure_trials() noexcept {
   TrialSettings settings = trial_settings(Distribution::kNormal);
   settings.search = figure_search(results_.settings);
   settings.gain_follows = false;
-  if (results_.settings.gain_mode != GainMode::kFixed) {
-    settings.box.sensitivity = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      settings.covariance[0][i] = 0.0;
-      settings.covariance[i][0] = 0.0;
-    }
-  }
+  settings.holds_sensitivity = results_.settings.gain_mode != GainMode::kFixed;
   work_.grid_.share_nothing();
   auto* const place = new (work_.grid_.numbers().data()) EvaluationWorkspace::FigureModel;
   (void)set_figure_model(place->model);  // As it was for the search.
