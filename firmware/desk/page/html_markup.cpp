@@ -19,12 +19,15 @@ struct SectionName {
 constexpr SectionName kSections[] = {
     {ReportSection::kTitle, "title", ""},
     {ReportSection::kLabels, "labels", "Labels"},
+    {ReportSection::kFigures, "figures", "The figures"},
     {ReportSection::kInput, "input", "What was put in"},
     {ReportSection::kFault, "fault", "Fault"},
     {ReportSection::kMeasurement, "measurement", "Measurement"},
     {ReportSection::kFit, "fit", "Fit"},
     {ReportSection::kErrorSystem, "error-system", "Error system"},
     {ReportSection::kEnergy, "energy", "Maximum energy"},
+    {ReportSection::kInBand, "in-band", "In-band error"},
+    {ReportSection::kUncertainty, "uncertainty", "Uncertainty of E"},
     {ReportSection::kMonteCarlo, "monte-carlo", "Monte Carlo"},
     {ReportSection::kTrend, "trend", "Trend"},
 };

@@ -22,6 +22,31 @@ using app::TextWriter;
 
 constexpr double kMilli = 1e3;
 constexpr double kPercent = 100.0;
+constexpr double kCoverageFactor = 2.0;
+
+const char* name_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "Largest energy of the error";
+    case Criterion::kEnergyDifference:
+      return "Largest energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "Largest energy of the in-band error";
+}
+
+const char* name_in_line(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "integral-square error";
+    case Criterion::kEnergyDifference:
+      return "energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "in-band error";
+}
 
 // Pictures
 
@@ -77,42 +102,85 @@ class EnergyFormat {
   int decimals_;
 };
 
-void append_energies(std::string& html, const EvaluationResults& results) {
+// A percentage with its expanded uncertainty; four digits without one.
+std::string percentage(double percent, double expanded) {
+  const bool has_u = expanded > 0.0 && std::isfinite(expanded);
+  return words_of([&](TextWriter& out) {
+    if (!has_u) {
+      out.general(percent, 4).text(" %");
+      return;
+    }
+    constexpr int kMostDecimals = 12;
+    const int decimals =
+        std::clamp(1 - static_cast<int>(std::floor(std::log10(expanded))), 0, kMostDecimals);
+    out.fixed(percent, decimals).text(" % +- ").fixed(expanded, decimals).text(" %");
+  });
+}
+
+double expanded(const app::EnergyUncertainty& known) {
+  return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
+}
+
+void append_in_band(std::string& html, const EvaluationResults& results) {
+  const auto percent = [&](const app::FigureResults& figure) {
+    return percentage(results.percent_of(figure.energy_v2s), expanded(figure.uncertainty)) +
+           " of S&nbsp;a";
+  };
+  const char* kind = " class=\"first\"";
+  if (results.matched.exists()) {
+    append_figure(html, kind, "Worst in-band error, constant delay taken out (U, k = 2)",
+                  percent(results.matched));
+    kind = "";
+  }
+  if (results.band.exists()) {
+    append_figure(html, kind, "Worst in-band error, with its delay", percent(results.band));
+  }
+}
+
+void append_papers_figure(std::string& html, const EvaluationResults& results) {
   const double energy = results.energy_v2s();
-  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-  const std::string largest = is_ise ? "Largest energy of the error" : "Largest energy difference";
+  if (energy < 0.0 || results.settings.criterion == Criterion::kInBandError) {
+    return;
+  }
+  std::string value =
+      percentage(results.percent_of(energy), expanded(results.uncertainty)) + " of S&nbsp;a";
+  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
+    value += "; an ideal sensor: " + percentage(results.percent_of(results.ideal.energy_v2s), 0.0);
+  }
+  append_figure(html, "", "The paper's figure, √(E/T)", value);
+}
+
+void append_uncertainty(std::string& html, const EvaluationResults& results) {
+  const app::EnergyUncertainty& known = results.uncertainty;
+  const double energy = results.energy_v2s();
+  const char* const name = name_of(results.settings.criterion);
+  const EnergyFormat format(energy, known.exists() ? known.u_v2s : 0.0);
+  append_figure(html, "", std::string(name) + " at the estimates, E",
+                format.number(energy) + format.unit());
+  if (!known.exists()) {
+    append_figure(html, "", "Standard uncertainty u(E)",
+                  results.has_uncertainty() ? "none: the draws are no devices"
+                                            : "none: all uncertainties are zero");
+    return;
+  }
+  append_figure(html, "", "Standard uncertainty u(E)", format.number(known.u_v2s) + format.unit());
+  append_figure(html, "", "Expanded uncertainty U(E), k = 2",
+                format.number(kCoverageFactor * known.u_v2s) + format.unit());
+  const std::string percent =
+      words_of([&](TextWriter& out) { out.general(kPercent * results.settings.probability, 6); });
+  append_figure(html, "", percent + " % coverage interval of E",
+                format.number(known.symmetric.low) + " to " + format.number(known.symmetric.high) +
+                    format.unit());
+}
+
+void append_papers_maximum(std::string& html, const EvaluationResults& results) {
   if (!results.has_monte_carlo) {
-    const EnergyFormat format(energy, 0.0);
-    append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
-                  format.number(energy) + format.unit());
-    append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }
   const MonteCarloResult& result = results.trials.result;
   const EnergyFormat format(result.maximum, result.u);
-  append_figure(html, " class=\"first\"",
-                largest + " within the device's uncertainty, E<sub>max</sub>",
+  append_figure(html, "", "The paper's E<sub>max</sub>, largest of its Monte Carlo trials",
                 format.number(result.maximum) + format.unit());
-  append_figure(html, "", "At the estimates, E", format.number(energy) + format.unit());
-  append_figure(html, "", "Standard uncertainty u(E)", format.number(result.u) + format.unit());
-  const std::string percent =
-      words_of([&](TextWriter& out) { out.general(kPercent * result.probability, 6); });
-  append_figure(html, "", percent + " % coverage interval of E",
-                format.number(result.symmetric.low) + " to " +
-                    format.number(result.symmetric.high) + format.unit());
-}
-
-void append_rms(std::string& html, const EvaluationResults& results) {
-  if (results.energy_v2s() < 0.0) {
-    return;
-  }
-  const double full = results.device.estimate.sensitivity * results.limit_mps2;
-  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-  const char* name = is_ise ? "rms error at the estimates" : "√(E/T) at the estimates";
-  append_figure(html, "", name, words_of([&](TextWriter& out) {
-                  out.general(results.rms_error_v(), 5).text(" V = ");
-                  out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S a");
-                }));
 }
 
 void append_bound(std::string& html, const EvaluationResults& results) {
@@ -137,8 +205,7 @@ void append_conditions(std::string& html, const EvaluationResults& results, bool
         out.text(" ms, against a Butterworth filter of order ");
         out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(" with a cutoff of ");
         out.general(settings.cutoff_hz, 7).text(" Hz; ");
-        const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
-        out.text(is_ise ? "integral-square error" : "energy difference");
+        out.text(name_in_line(settings.criterion));
         const bool is_paper = settings.method == Method::kPaper;
         out.text(is_paper ? ", by the paper's method: other signals may reach more." : ".");
       }) +
@@ -188,9 +255,11 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
   markup.finish();
 
   std::string html = opening(context.labels) + "<dl class=\"headline\">\n";
-  append_energies(html, results);
-  append_rms(html, results);
+  append_in_band(html, results);
+  append_papers_figure(html, results);
+  append_uncertainty(html, results);
   append_bound(html, results);
+  append_papers_maximum(html, results);
   html += "</dl>\n";
   append_conditions(html, results, context.in_g);
   append_warnings(html, markup);

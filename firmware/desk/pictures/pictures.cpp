@@ -58,9 +58,20 @@ std::string filter_of(const EvaluationResults& results) {
   });
 }
 
+const char* name_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "integral-square error";
+    case Criterion::kEnergyDifference:
+      return "energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "in-band error";
+}
+
 std::string conditions_of(const EvaluationResults& results, bool with_time, bool in_g) {
   const app::Settings& settings = results.settings;
-  const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   return words_of([&](TextWriter& out) {
     if (with_time) {
       out.text("T = ").general(kMilli * settings.duration_s, 6).text(" ms, ");
@@ -72,7 +83,7 @@ std::string conditions_of(const EvaluationResults& results, bool with_time, bool
     out.text(", filter of order ");
     out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(", ");
     out.general(settings.cutoff_hz, 6).text(" Hz, ");
-    out.text(is_ise ? "integral-square error" : "energy difference");
+    out.text(name_of(settings.criterion));
     out.text(settings.method == Method::kPaper ? ", paper's method" : "");
   });
 }
@@ -91,8 +102,8 @@ std::string energy_of(const EvaluationResults& results) {
     out.text("E = ").scientific(energy, 4).text(" V² s");
     if (energy >= 0.0) {
       const double full = results.device.estimate.sensitivity * results.limit_mps2;
-      const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-      out.text(is_ise ? ", rms error " : ", √(E/T) = ")
+      const bool is_error = results.settings.criterion != Criterion::kEnergyDifference;
+      out.text(is_error ? ", rms error " : ", √(E/T) = ")
           .general(results.rms_error_v(), 4)
           .text(" V = ");
       out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S·a");
