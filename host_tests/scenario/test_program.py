@@ -89,7 +89,8 @@ class GoodPoints(ProgramTest):
         self.assertAlmostEqual(model["f0"], 1000.0, delta=1e-9)
         self.assertAlmostEqual(model["beta"], 0.1, delta=1e-12)
         self.assertEqual(model["dof"], 2 * len(FREQUENCIES) - 3)
-        report = self.succeed("report", "--points", name, "--cutoff", "300", "--trials", "200000", "--trend", "none")
+        report = self.succeed("report", "--points", name, "--cutoff", "300", "--trials", "200000", "--trend", "none",
+                              "--time", "0.007")  # Longer than the settling time.
         self.assertNotIn("WARNING", report)
 
     def test_forms_of_a_table_do_not_matter(self):

@@ -550,6 +550,25 @@ TEST(Instrument, KeepsSettingsInFourSlots) {
   EXPECT_EQ(error_of(i, "*RCL"), "-109,\"Missing parameter;*RCL\"");
 }
 
+TEST(Instrument, AnswersTheInBandErrorAndTheUncertaintyOfTheEnergy) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask("CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;:CALC:MCAR:TRI 1000"), "");
+  // Nine digits of the energy are known, four of the percentage: half a unit of the last.
+  const std::vector<double> matched = i.numbers("CALC:ENER:BAND?");
+  ASSERT_GE(matched.size(), 6U);
+  EXPECT_NEAR(matched[0], 3.30567639e-7, 0.5e-15);
+  EXPECT_NEAR(matched[1], 1.196, 5e-4);
+  ASSERT_EQ(i.ask("CALC:ENER:DEL NONE"), "");
+  const std::vector<double> plain = i.numbers("CALC:ENER:BAND?");
+  ASSERT_EQ(plain.size(), 5U);
+  EXPECT_NEAR(plain[0], 7.66114200e-6, 0.5e-14);
+  EXPECT_NEAR(plain[4], 0.639919e-3, 0.5e-9);
+  const std::vector<double> known = i.numbers("CALC:UNC?");
+  ASSERT_EQ(known.size(), 7U);
+  EXPECT_EQ(known[1], 2.0 * known[0]);
+  EXPECT_LT(known[2], known[3]);
+}
+
 TEST(Instrument, KnowsTheLastIdentificationAfterPowerOff) {
   InstrumentBench i;
   i.send(table1_commands());
