@@ -50,8 +50,12 @@ constexpr std::size_t kLeafNumbers = 6'000'000;
 constexpr double kMaxEffort_s = 1e7;
 
 // Options that mean here what they mean for a report.
-constexpr std::string_view kSharedOptions[] = {"points", "model", "order", "cutoff",
-                                               "gain",   "time",  "limit", "json"};
+constexpr std::string_view kSharedOptions[] = {
+    "points",      "model",       "order",
+    "cutoff",      "gain",        "time",
+    "limit",       "json",        "reference-uncertainty",
+    "uncertainty", "input-units", "channel-delay",
+    "invert",      "damping"};
 
 struct CertifyOptions {
   ReportOptions report;
@@ -197,12 +201,14 @@ Problem find_energy(const ReportOptions& options, app::Evaluation& evaluation) {
     status = evaluation.start_from_model(options.device, options.settings, workspace,
                                          app::Goal::kEnergy);
   } else {
-    static FrequencyResponse points;
-    if (Problem problem =
-            read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+    static desk::ImportedPoints imported;
+    if (Problem problem = read_points(options.points_path, options.import,
+                                      options.reference_uncertainty_percent, imported)) {
       return problem;
     }
-    status = evaluation.start_from_points(points, options.settings, workspace, app::Goal::kEnergy);
+    evaluation.give_damping(options.damping);
+    status = evaluation.start_from_points(imported.points, options.settings, workspace,
+                                          app::Goal::kEnergy);
   }
   ConsoleProgress progress;
   while (status == Status::kOk && !evaluation.done() && !evaluation.has_energy()) {

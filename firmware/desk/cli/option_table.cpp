@@ -8,8 +8,11 @@
 #include <limits>
 #include <string>
 
+#include "emax/base/capacity.hpp"
 #include "emax/base/decimal.hpp"
 #include "emax/base/elementary.hpp"
+
+#include "desk/import/import_options.hpp"
 
 namespace emax::host {
 
@@ -191,11 +194,12 @@ bool take_bench_fault(std::string_view text, ReportOptions& options) {
 
 constexpr Option kOptions[] = {
     {"points", "The device", "FILE", nullptr, "the name of a CSV file, or -",
-     "measured points, 3 to 64 lines of CSV by frequency:\n"
-     "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
-     "amplitude in V/(m/s^2), a lag negative, expanded\n"
-     "uncertainties (k = 2), # starts a comment;\n"
-     "- reads standard input",
+     "measured points, 3 to " EMAX_TEXT_OF(
+         EMAX_MAX_POINTS) " lines of a table:\n"
+                          "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
+                          "amplitude in V/(m/s^2), a lag negative, expanded\n"
+                          "uncertainties (k = 2); or with a header that names\n"
+                          "columns and units; - reads standard input",
      [](std::string_view value, ReportOptions& options) {
        return take_text(value, options.points_path);
      }},
@@ -213,6 +217,36 @@ constexpr Option kOptions[] = {
      [](std::string_view value, ReportOptions& options) {
        double& percent = options.reference_uncertainty_percent;
        return take_number(value, percent) && percent >= 0.0 && percent <= kMaxReferencePercent;
+     }},
+    {"uncertainty", "Of the table that --points names", "UA,UPHASE", nullptr,
+     desk::kExpectedUncertaintyOption,
+     "expanded uncertainties (k = 2) of amplitude and phase,\n"
+     "such as 1%,1deg, for a table without columns of them",
+     [](std::string_view value, ReportOptions& options) {
+       return desk::take_uncertainty(value, options.import);
+     }},
+    {"input-units", nullptr, "UNITS", nullptr, desk::kExpectedInputUnits,
+     "of columns whose header names none, such as mV/g or\n"
+     "kHz,mV/(m/s2),rad",
+     [](std::string_view value, ReportOptions& options) {
+       return desk::take_input_units(value, options.import);
+     }},
+    {"channel-delay", nullptr, "SECONDS", nullptr, desk::kExpectedChannelDelay,
+     "known delay of the device's channel behind the\n"
+     "reference's; it is taken out of the phases",
+     [](std::string_view value, ReportOptions& options) {
+       return desk::take_channel_delay(value, options.import);
+     }},
+    {"invert", nullptr, nullptr, nullptr, nullptr,
+     "180 degrees are added to every phase: the polarity of\n"
+     "the sensor is turned round",
+     [](std::string_view, ReportOptions& options) { return options.import.is_inverted = true; }},
+    {"damping", nullptr, "BETA", nullptr, "a number from 0.0001 to below 1",
+     "damping, where the table has magnitudes only and does\n"
+     "not determine it",
+     [](std::string_view value, ReportOptions& options) {
+       return take_number(value, options.damping) && is_within(options.damping, 1e-4, 1.0) &&
+              options.damping != 1.0;
      }},
     {"bench-seed", "The simulated bench, which measures without --points and --model", "N", "1",
      "a whole number from 0 to 4294967295", "of its noise and of what its certificates leave open",

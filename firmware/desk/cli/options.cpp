@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "desk/cli/console.hpp"
@@ -19,6 +20,12 @@ struct Given {
   const Option* option = nullptr;
   std::string_view value;
 };
+
+bool is_for_table(const Option& option) noexcept {
+  constexpr std::string_view kNames[] = {"uncertainty", "input-units", "channel-delay", "invert",
+                                         "damping"};
+  return std::find(std::begin(kNames), std::end(kNames), option.name) != std::end(kNames);
+}
 
 std::string dashed(std::string_view name) { return "--" + std::string(name); }
 
@@ -94,6 +101,11 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
     if (given.option->is_for_bench && !options.measures()) {
       return bad_input(dashed(given.option->name) + ": excluded by " + source +
                        "; expected only where the simulated bench measures");
+    }
+  }
+  for (const Given& given : all) {
+    if (is_for_table(*given.option) && options.points_path.empty()) {
+      return bad_input(dashed(given.option->name) + ": no table; expected --points FILE with it");
     }
   }
   if (has_model && options.reference_uncertainty_percent != 0.0) {

@@ -13,6 +13,7 @@
 #include "emax/sim/sim_bench.hpp"
 
 #include "desk/cli/problem.hpp"
+#include "desk/import/import_points.hpp"
 
 namespace emax::host {
 
@@ -20,9 +21,11 @@ namespace emax::host {
 /// neither, from a measurement on the simulated bench.
 struct ReportOptions {
   app::Settings settings;
-  std::string points_path;  ///< "-" for standard input; empty for none.
-  std::string model_text;   ///< As it was given; empty for none.
-  app::Device device = {};  ///< What `model_text` says.
+  desk::ImportOptions import;  ///< What is said of the table in `points_path`.
+  double damping = 0.0;        ///< For a table of magnitudes that leaves it open; 0 for none.
+  std::string points_path;     ///< "-" for standard input; empty for none.
+  std::string model_text;      ///< As it was given; empty for none.
+  app::Device device = {};     ///< What `model_text` says.
   std::size_t seed_count = 4;
   /// Expanded. Without the option it is what `sweep` says on the bench, and 0 else.
   double reference_uncertainty_percent = 0.0;

@@ -83,19 +83,19 @@ struct Results {
 };
 
 Problem start(const ReportOptions& options, const app::Sweep& sweep, app::Evaluation& evaluation,
-              app::EvaluationWorkspace& workspace) {
+              app::EvaluationWorkspace& workspace, desk::ImportedPoints& imported) {
   if (!options.model_text.empty()) {
     const Status status = evaluation.start_from_model(options.device, options.settings, workspace);
     return status == Status::kOk ? Problem{} : describe(evaluation, options);
   }
-  static FrequencyResponse points;
   if (options.measures()) {
-    (void)sweep.copy_to(points);  // A sweep that is done has points that a table takes.
-  } else if (Problem problem =
-                 read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+    (void)sweep.copy_to(imported.points);  // A sweep that is done has points that a table takes.
+  } else if (Problem problem = read_points(options.points_path, options.import,
+                                           options.reference_uncertainty_percent, imported)) {
     return problem;
   }
-  const Status status = evaluation.start_from_points(points, options.settings, workspace);
+  evaluation.give_damping(options.damping);
+  const Status status = evaluation.start_from_points(imported.points, options.settings, workspace);
   return status == Status::kOk ? Problem{} : describe(evaluation, options);
 }
 
@@ -122,12 +122,13 @@ Problem run(const ReportOptions& options, ConsoleProgress& progress, app::Evalua
 }
 
 // Everything from the measurement to the results.
-Problem work(const ReportOptions& options, BenchJob& bench, app::Evaluation& evaluation) {
+Problem work(const ReportOptions& options, BenchJob& bench, app::Evaluation& evaluation,
+             desk::ImportedPoints& imported) {
   static app::EvaluationWorkspace workspace;
   ConsoleProgress progress;
   Problem problem = options.measures() ? bench.run(options, progress) : Problem{};
   if (!problem) {
-    problem = start(options, bench.sweep(), evaluation, workspace);
+    problem = start(options, bench.sweep(), evaluation, workspace, imported);
   }
   return problem ? problem : run(options, progress, evaluation, workspace);
 }
@@ -138,6 +139,10 @@ void write_text(const Results& results, app::TextWriter& out) {
 
 void write_results(const Results& results, app::TextWriter& out) {
   write_json(results.evaluation, results.context, out);
+}
+
+const char* or_null(const std::string& text) noexcept {
+  return text.empty() ? nullptr : text.c_str();
 }
 
 template <typename Write>
@@ -185,12 +190,13 @@ Problem run_report(Span<const std::string_view> arguments) {
   }
   static BenchJob bench;
   static app::Evaluation evaluation;
-  const Problem problem_of_work = work(options, bench, evaluation);
+  static desk::ImportedPoints imported;
+  const Problem problem_of_work = work(options, bench, evaluation, imported);
   const std::string points_name = name_of_input(options.points_path);
   const app::Measurement measurement = bench.measurement();
   const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                       options.measures() ? &measurement : nullptr, options.labels(),
-                                      options.in_g};
+                                      options.in_g, or_null(imported.understanding)};
   const Results results = {evaluation, context};
   if (problem_of_work) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();

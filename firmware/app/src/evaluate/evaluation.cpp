@@ -31,6 +31,9 @@ constexpr char kNormalTooWide[] =
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
     "below 1, because fit and grid follow the resonance.";
+constexpr char kOnlySensitivity[] =
+    "The points determine the sensitivity alone: they lie so far below the resonance that f0 and "
+    "the damping may be anything; measure nearer to it.";
 constexpr char kTooManyCellsBest[] =
     "The grid of 12 cells per period of the resonance (or of the cutoff, if that is higher) needs "
     "more than " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells for this time; shorten it.";
@@ -142,15 +145,29 @@ Status Evaluation::start_from_points(const FrequencyResponse& points, const Sett
   if (status != Status::kOk) {
     return status;
   }
-  const Status fit_status = fit_.fit(points);
+  const Status fit_status = take_fit(fit_.fit(points));
+  return fit_status == Status::kOk ? prepare(workspace) : fit_status;
+}
+
+/// The device by what the points determine.
+Status Evaluation::take_fit(Status fit_status) noexcept {
   const WlspFit& fit = fit_.result();
+  judgement_ = judge(fit);
+  if (judgement_.determined == Determined::kSensitivity) {
+    return fail(Status::kNotIdentifiable, Stage::kFitDraws, kOnlySensitivity);
+  }
+  if (judgement_.determined == Determined::kAllButDamping) {
+    device_.estimate = judgement_.device;
+    device_.u = {judgement_.u_sensitivity, judgement_.u_natural_frequency_hz, 0.0};
+    return Status::kOk;
+  }
   if (fit_status != Status::kOk) {
     return fail(fit_status, Stage::kFitDraws,
                 fit_status == Status::kOverdamped ? kOverdamped : explain(fit_status));
   }
   device_.estimate = fit.model;
   device_.u = {fit.u_sensitivity, fit.u_natural_frequency_hz, fit.u_damping};
-  return prepare(workspace);
+  return Status::kOk;
 }
 
 Status Evaluation::start_from_model(const Device& device, const Settings& settings,
@@ -170,6 +187,7 @@ Status Evaluation::begin(const Settings& settings, Goal goal) noexcept {
   settings_ = settings;
   goal_ = goal;
   device_ = {};
+  judgement_ = {};
   peak_ = {};
   settling_ = {};
   has_absolute_error_ = false;
@@ -202,6 +220,10 @@ void Evaluation::drop_trials() noexcept {
   adaptive_result_ = {};
   device_at_maximum_ = {};
   stored_ = 0;
+  has_cut_range_ = false;
+  is_cut_done_ = false;
+  cut_low_ = 0.0;
+  cut_high_ = 0.0;
   has_monte_carlo_ = false;
 }
 
@@ -283,7 +305,7 @@ void Evaluation::drop_incomplete() noexcept {
   if (!has_fit_draws_) {
     drop_fit_draws();
   }
-  if (!has_monte_carlo_) {
+  if (!has_monte_carlo_ && !is_cut_done_) {
     drop_trials();
   }
   if (!has_trend_) {
@@ -352,6 +374,8 @@ void Evaluation::go_on(EvaluationWorkspace& workspace) noexcept {
     begin_energy(workspace);
   } else if (goal_ != Goal::kModel && !is_bound_done_) {
     begin_bound(workspace);
+  } else if (has_trials(goal_) && is_damping_open() && !is_cut_done_) {
+    begin_cut_range(workspace);
   } else if (has_trials(goal_) && !has_monte_carlo_ && has_uncertainty()) {
     begin_trials(workspace);
   } else if (app::has_trend(goal_) && !has_trend_ && settings_.trend_count != 0) {
@@ -363,6 +387,9 @@ void Evaluation::go_on(EvaluationWorkspace& workspace) noexcept {
 }
 
 bool Evaluation::has_uncertainty() const noexcept {
+  if (is_damping_open()) {
+    return false;  // Trials need a range for each parameter.
+  }
   const ParameterBox& u = device_.u;
   return u.sensitivity != 0.0 || u.natural_frequency_hz != 0.0 || u.damping != 0.0;
 }

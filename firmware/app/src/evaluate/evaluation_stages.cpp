@@ -240,7 +240,32 @@ void Evaluation::begin_trials(EvaluationWorkspace& workspace) noexcept {
   stage_ = Stage::kPrediction;
 }
 
+void Evaluation::begin_cut_range(EvaluationWorkspace& workspace) noexcept {
+  auto* const part = new (&workspace.part_.cut) EvaluationWorkspace::CutPart;
+  part->range.start(model_, judgement_, search_settings(settings_, settings_.duration_s),
+                    settings_.gain_mode == GainMode::kTrack);
+  stage_ = Stage::kPrediction;
+}
+
+void Evaluation::step_cut_range(EvaluationWorkspace& workspace) noexcept {
+  CutRange& range = workspace.part_.cut.range;
+  range.step(workspace.search_, workspace.grid_);
+  progress_ = range.progress();
+  if (!range.done()) {
+    return;
+  }
+  has_cut_range_ = range.is_found();
+  cut_low_ = range.low() < maximum_.energy ? range.low() : maximum_.energy;
+  cut_high_ = range.high() > maximum_.energy ? range.high() : maximum_.energy;
+  is_cut_done_ = true;
+  go_on(workspace);
+}
+
 void Evaluation::step_prediction(EvaluationWorkspace& workspace) noexcept {
+  if (is_damping_open()) {
+    step_cut_range(workspace);
+    return;
+  }
   EvaluationWorkspace::TrialPart& part = workspace.part_.trial;
   if (!part.trials.ready()) {
     part.trials.prepare(maximum_, workspace.grid_);

@@ -75,6 +75,10 @@ void write_source(const Evaluation& evaluation, const ReportContext& context,
   }
   out.indent().integer(points.size()).text(" points from ").exact(points[0].frequency_hz);
   out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
+  if (context.read_as != nullptr) {
+    out.indent();
+    out.quote(context.read_as).line();
+  }
 }
 
 void write_filter(const Evaluation& evaluation, ReportWriter& out) noexcept {

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/evaluate/cut_range.hpp"
 #include "emax/app/settings/settings.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/bound/energy_bound.hpp"
 #include "emax/energy/energy_search.hpp"
+#include "emax/identify/fit_judgement.hpp"
 #include "emax/identify/frequency_response.hpp"
 #include "emax/identify/wlsp.hpp"
 #include "emax/model/absolute_error.hpp"
@@ -120,6 +122,9 @@ class EvaluationWorkspace {
   struct BoundPart : InPlace {
     EnergyBound bound;
   };
+  struct CutPart : InPlace {
+    CutRange range;
+  };
   struct TrialPart : InPlace {
     EnergyTrials trials;
     MonteCarlo monte_carlo;
@@ -129,6 +134,7 @@ class EvaluationWorkspace {
     constexpr Part() noexcept : trial() {}
     ModelPart model;
     BoundPart bound;
+    CutPart cut;
     TrialPart trial;
   };
 
@@ -217,7 +223,20 @@ class Evaluation {
     stored_ = 0;
   }
 
+  /// The damping to hold where a table has magnitudes alone that do not determine it
+  /// (`Wlsp::give_damping()`); 0 for none. For the starts to come.
+  void give_damping(double damping) noexcept { fit_.give_damping(damping); }
+
   // Results, each complete once its stage has passed.
+  /// What the points determine; with Determined::kAllButDamping there are no trials, but the range
+  /// of the energies over the dampings that are left open. Source::kPoints only.
+  const FitJudgement& judgement() const noexcept { return judgement_; }
+  bool is_damping_open() const noexcept {
+    return source_ == Source::kPoints && judgement_.determined == Determined::kAllButDamping;
+  }
+  bool has_cut_range() const noexcept { return has_cut_range_; }
+  double cut_low_v2s() const noexcept { return a2() * cut_low_; }
+  double cut_high_v2s() const noexcept { return a2() * cut_high_; }
   /// The error system with its peak, settling time and largest absolute error is there.
   bool has_model() const noexcept { return has_model_; }
   bool has_fit() const noexcept { return is_accepted_ && source_ == Source::kPoints; }
@@ -316,6 +335,9 @@ class Evaluation {
   void step_energy(EvaluationWorkspace& workspace) noexcept;
   void begin_bound(EvaluationWorkspace& workspace) noexcept;
   void step_bound(EvaluationWorkspace& workspace) noexcept;
+  Status take_fit(Status fit_status) noexcept;
+  void begin_cut_range(EvaluationWorkspace& workspace) noexcept;
+  void step_cut_range(EvaluationWorkspace& workspace) noexcept;
   void begin_trials(EvaluationWorkspace& workspace) noexcept;
   void step_prediction(EvaluationWorkspace& workspace) noexcept;
   void step_adaptive(EvaluationWorkspace& workspace) noexcept;
@@ -363,6 +385,9 @@ class Evaluation {
   TrendPoint trend_points_[kMaxTrendPoints] = {};
   Trend trend_ = all_zero<Trend>();
   Failure failure_;
+  FitJudgement judgement_;
+  double cut_low_ = 0.0;  // For a = 1.
+  double cut_high_ = 0.0;
   Span<double> store_;
   double trace_[kTraceLength] = {};
   std::size_t trace_count_ = 0;
@@ -384,6 +409,8 @@ class Evaluation {
   bool has_bound_ = false;
   bool is_bound_done_ = false;  // Proven or given up.
   bool has_monte_carlo_ = false;
+  bool has_cut_range_ = false;
+  bool is_cut_done_ = false;  // Found or given up.
   bool has_trend_ = false;
   bool trial_runs_ = false;
   bool trend_search_runs_ = false;

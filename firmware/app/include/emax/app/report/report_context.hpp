@@ -31,6 +31,7 @@ struct ReportContext {
   const Measurement* measurement = nullptr;  ///< Null if the points were not measured here.
   Labels labels = {};
   bool in_g = false;  ///< Accelerations and sensitivities also in standard gravity.
+  const char* read_as = nullptr;  ///< What was understood of a table of points; null for nothing.
 };
 
 /// m/s^2, exactly (ISO 80000-3).
