@@ -137,11 +137,22 @@ class CompareDevices(Comparing, ProgramTest):
 
 
 class CompareOutput(Comparing, ProgramTest):
+    def test_labels_are_no_formulas_and_no_control_characters(self):
+        odd = ["=cmd|' /C calc'!A0", "+1", "-2", "@SUM(1)", " =3", "a\x1b[31mb\tc\x7f"]
+        self.compare(*(result((5 + i) * 1e-3, device=name, serial=name) for i, name in enumerate(odd)))
+        names = [f"{i}.json" for i in range(len(odd))]
+        text = self.succeed("compare", *names, "--csv")
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+        expected = ["'" + name for name in odd[:-1]] + ["a [31mb c "]
+        self.assertEqual(sorted(row["device"] for row in rows), sorted(expected))
+        self.assertEqual(sorted(row["serial"] for row in rows), sorted(expected))
+        self.assertFalse(any(ord(c) < 32 for c in text.replace("\n", "")))
+
     def test_csv_and_odd_labels(self):
         odd = 'say "hi", <b>&amp;</b>\nnext'
         self.compare(result(5e-3, device=odd, serial="12;3"), result(6e-3, None, device="x" * 10_000))
         rows = list(csv.DictReader(io.StringIO(self.succeed("compare", "0.json", "1.json", "--csv"), newline="")))
-        self.assertEqual([row["device"] for row in rows], [odd, "x" * 10_000])
+        self.assertEqual([row["device"] for row in rows], [odd.replace("\n", " "), "x" * 10_000])
         self.assertEqual([row["serial"] for row in rows], ["12;3", ""])
         self.assertEqual([float(row["E"]) for row in rows], [5e-3, 6e-3])
         self.assertEqual([row["u"] for row in rows][1], "")

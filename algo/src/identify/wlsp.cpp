@@ -324,14 +324,15 @@ void Wlsp::finish_without_phases() noexcept {
 
 // f0 may be anywhere above the points: `judge()` reads that from mu3 = 0 with an uncertainty.
 Status Wlsp::sensitivity_alone(double a0, double u_a0) noexcept {
+  if (!(a0 > 2.0 * u_a0)) {
+    return reject(Status::kNotIdentifiable);
+  }
   fit_ = WlspFit();
   fit_.status = Status::kNotPhysical;
   fit_.unknown_phases = static_cast<std::uint32_t>(response_.size());
-  if (a0 > 0.0) {
-    fit_.mu[0] = sqrt(a0);
-    fit_.u_mu[0] = 0.5 * u_a0 / fit_.mu[0];
-    fit_.u_mu[2] = fit_.mu[0] / square(kTwoPi * max_frequency_hz_);
-  }
+  fit_.mu[0] = sqrt(a0);
+  fit_.u_mu[0] = 0.5 * u_a0 / fit_.mu[0];
+  fit_.u_mu[2] = fit_.mu[0] / square(kTwoPi * max_frequency_hz_);
   return fit_.status;
 }
 

@@ -142,4 +142,20 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   return problem ? problem : files.commit();
 }
 
+Problem write_sensitivity_files(const app::Evaluation& evaluation,
+                                const app::ReportContext& context, OutputFiles& files) {
+  Problem problem = files.add("report.txt", [&](app::TextWriter& out) {
+    write_sensitivity_report(evaluation, context, out);
+  });
+  problem = problem ? problem : files.add("results.json", [&](app::TextWriter& out) {
+    write_sensitivity_json(evaluation, context, out);
+  });
+  for (const Table& table : kTables) {
+    files.drop(table.name);
+  }
+  files.drop("report.html");
+  drop_pictures(files);
+  return problem ? problem : files.commit();
+}
+
 }  // namespace emax::host

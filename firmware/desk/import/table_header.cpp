@@ -143,11 +143,13 @@ class NameReader final {
     return role_ != Role::kIgnored;
   }
 
-  // What an uncertainty without a name belongs to: its unit knows, else what stands before it.
+  // What an uncertainty without a name belongs to: its unit knows (nobody states a phase in
+  // percent), else what stands before it.
   Role role_of_unit(Role before) const {
     const Unit unit = find_unit(column_.unit_spelling);
     if (as_decibel(column_.unit_spelling).is_decibel ||
-        (unit.is_given() && unit.quantity == Quantity::kAmplitude)) {
+        (unit.is_given() &&
+         (unit.quantity == Quantity::kAmplitude || unit.quantity == Quantity::kRatio))) {
       return Role::kAmplitude;
     }
     return unit.is_given() && unit.quantity == Quantity::kPhase ? Role::kPhase : before;

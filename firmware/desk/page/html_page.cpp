@@ -208,6 +208,15 @@ void append_figure(std::string& html, const char* kind, const std::string& name,
   html += std::string("<div") + kind + "><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
 }
 
+std::string range_of(const Evaluation& evaluation) {
+  if (!evaluation.has_cut_range()) {
+    return "not found";
+  }
+  const EnergyFormat format(evaluation.cut_high_v2s(), 0.0);
+  return format.number(evaluation.cut_low_v2s()) + " to " +
+         format.number(evaluation.cut_high_v2s()) + format.unit();
+}
+
 void append_energies(std::string& html, const Evaluation& evaluation) {
   const double energy = evaluation.energy_v2s();
   const bool is_ise = evaluation.settings().criterion == Criterion::kIntegralSquareError;
@@ -216,6 +225,11 @@ void append_energies(std::string& html, const Evaluation& evaluation) {
     const EnergyFormat format(energy, 0.0);
     append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
                   format.number(energy) + format.unit());
+    if (evaluation.is_damping_open()) {
+      append_figure(html, "", "Range of E, as the points leave the damping open",
+                    range_of(evaluation));
+      return;
+    }
     append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }

@@ -23,6 +23,7 @@
 #include "desk/files/report_files.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
+#include "desk/report/fit_causes.hpp"
 
 namespace emax::host {
 
@@ -70,8 +71,15 @@ Problem describe(const app::Evaluation& evaluation, const ReportOptions& options
   app::TextWriter writer(sentence);
   write_failure(evaluation, writer);
   const std::string who = culprit(failure, options);
-  const std::string line =
+  std::string line =
       who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
+  if (is_inverted && !options.points_path.empty()) {
+    line += "; --invert adds 180 degrees to every phase";
+  }
+  if (failure.stage == app::Stage::kFitDraws) {
+    const std::string cause = desk::cause_of(evaluation.fit());
+    line += cause.empty() ? "" : "; " + in_line(cause);
+  }
   // What the bench gave is no input of the user's.
   return who == "measurement" ? fault(line) : bad_input(line);
 }
@@ -176,6 +184,27 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
   return problem;
 }
 
+bool is_sensitivity_alone(const app::Evaluation& evaluation, const ReportOptions& options) {
+  return !options.points_path.empty() && evaluation.stage() == app::Stage::kFailed &&
+         evaluation.judgement().determined == Determined::kSensitivity;
+}
+
+// Points that determine S alone: its value is a result.
+Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) {
+  const auto text = [&](app::TextWriter& out) {
+    write_sensitivity_report(results.evaluation, results.context, out);
+  };
+  const auto object = [&](app::TextWriter& out) {
+    write_sensitivity_json(results.evaluation, results.context, out);
+  };
+  if (Problem problem = files != nullptr
+                            ? write_sensitivity_files(results.evaluation, results.context, *files)
+                            : Problem{}) {
+    return problem;
+  }
+  return json ? print(object) : print(text);
+}
+
 }  // namespace
 
 Problem run_report(Span<const std::string_view> arguments) {
@@ -193,11 +222,19 @@ Problem run_report(Span<const std::string_view> arguments) {
   static desk::ImportedPoints imported;
   const Problem problem_of_work = work(options, bench, evaluation, imported);
   const std::string points_name = name_of_input(options.points_path);
+  const bool has_table = !options.points_path.empty() && !problem_of_work;
+  const std::string cause = has_table ? desk::cause_of(evaluation.fit()) : "";
   const app::Measurement measurement = bench.measurement();
   const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
-                                      options.measures() ? &measurement : nullptr, options.labels(),
-                                      options.in_g, or_null(imported.understanding)};
+                                      options.measures() ? &measurement : nullptr,
+                                      options.labels(),
+                                      options.in_g,
+                                      or_null(cause),
+                                      or_null(imported.understanding)};
   const Results results = {evaluation, context};
+  if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
+    return give_sensitivity(results, options.json, files);
+  }
   if (problem_of_work) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
     return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;

@@ -490,18 +490,37 @@ TEST(Evaluation, RefusesFits) {
   EXPECT_NEAR(evaluation.fit().result().mu[0], 1.0 / 1.00791, 1e-5);
 }
 
-TEST(Evaluation, UncertaintiesOfAPoorFitAreRefused) {
+FrequencyResponse with_uncertainties_times(double factor) {
   const FrequencyResponse good = synthetic_points(0.0);
   FrequencyResponse points;
   for (ResponsePoint point : good.points()) {
-    point.u_amplitude *= 1000.0;
-    point.u_phase_rad *= 1000.0;
-    ASSERT_EQ(points.add(point), Status::kOk);
+    point.u_amplitude *= factor;
+    point.u_phase_rad *= factor;
+    EXPECT_EQ(points.add(point), Status::kOk);
   }
+  return points;
+}
+
+TEST(Evaluation, UncertaintiesOfAPoorFitLeaveTheDampingOpen) {
+  // u(beta) of the original points is about 0.001; 200 times that is most of beta itself.
+  const Evaluation& evaluation = evaluated(with_uncertainties_times(200.0), quick_settings());
+  ASSERT_EQ(evaluation.status(), Status::kOk);
+  EXPECT_TRUE(evaluation.is_damping_open());
+  EXPECT_FALSE(evaluation.has_monte_carlo());
+  ASSERT_TRUE(evaluation.has_cut_range());
+  EXPECT_LT(evaluation.cut_low_v2s(), evaluation.energy_v2s());
+  EXPECT_GT(evaluation.cut_high_v2s(), evaluation.energy_v2s());
+}
+
+TEST(Evaluation, HopelessUncertaintiesDetermineNothing) {
   Evaluation& evaluation = emax::test::shared_evaluation();
-  EXPECT_EQ(evaluation.start_from_points(points, quick_settings(), shared_workspace()),
-            Status::kInvalidArgument);
-  EXPECT_EQ(evaluation.failure().stage, Stage::kMonteCarlo);
+  EXPECT_EQ(evaluation.start_from_points(with_uncertainties_times(70.0), quick_settings(),
+                                         shared_workspace()),
+            Status::kOk);
+  EXPECT_EQ(evaluation.start_from_points(with_uncertainties_times(1000.0), quick_settings(),
+                                         shared_workspace()),
+            Status::kNotIdentifiable);
+  EXPECT_EQ(evaluation.failure().stage, Stage::kFitDraws);
 }
 
 }  // namespace

@@ -267,6 +267,48 @@ void write_monte_carlo(const Evaluation& evaluation, JsonWriter& json) noexcept 
   json.close();
 }
 
+const char* name_of(Determined determined) noexcept {
+  switch (determined) {
+    case Determined::kAll:
+      return "all";
+    case Determined::kAllButDamping:
+      return "all but beta";
+    case Determined::kSensitivity:
+      return "S";
+    case Determined::kNothing:
+      break;
+  }
+  return "nothing";
+}
+
+// What the points determine, as fitted, and the range of the energy where they leave beta open.
+void write_fit(const Evaluation& evaluation, const ReportContext& context,
+               JsonWriter& json) noexcept {
+  const FitJudgement& judgement = evaluation.judgement();
+  if (evaluation.source() != Source::kPoints || context.measurement != nullptr) {
+    return;
+  }
+  const WlspFit& fit = evaluation.fit().result();
+  json.open("fit");
+  json.words("determined", name_of(judgement.determined));
+  json.number("beta", fit.model.damping);
+  json.number("ubeta", fit.u_damping);
+  json.integer("unknown_phases", fit.unknown_phases);
+  if (context.read_as != nullptr) {
+    json.words("read_as", context.read_as);
+  }
+  if (context.cause != nullptr) {
+    json.words("cause", context.cause);
+  }
+  if (evaluation.is_damping_open()) {
+    json.pair("beta_range", judgement.damping_low, judgement.damping_high);
+  }
+  if (evaluation.has_cut_range()) {
+    json.pair("E_range", evaluation.cut_low_v2s(), evaluation.cut_high_v2s());
+  }
+  json.close();
+}
+
 void write_trend(const Evaluation& evaluation, JsonWriter& json) noexcept {
   if (evaluation.trend_points().empty()) {
     json.null("trend");
@@ -314,12 +356,35 @@ void write_json(const Evaluation& evaluation, const ReportContext& context,
   json.open(nullptr);
   write_head(context.labels, json);
   write_model(evaluation, context, json);
+  write_fit(evaluation, context, json);
   write_bench(context.measurement, nullptr, json);
   write_filter(evaluation, json);
   write_impulse_response(evaluation, json);
   write_energy(evaluation, json);
   write_monte_carlo(evaluation, json);
   write_trend(evaluation, json);
+  json.close();
+  out.line();
+}
+
+void write_sensitivity_json(const Evaluation& evaluation, const ReportContext& context,
+                            TextWriter& out) noexcept {
+  const FitJudgement& judgement = evaluation.judgement();
+  JsonWriter json(out);
+  json.open(nullptr);
+  write_head(context.labels, json);
+  json.open("model");
+  json.number("S", judgement.device.sensitivity);
+  json.null("f0");
+  json.null("beta");
+  json.number("uS", judgement.u_sensitivity);
+  json.words("source", source_of(evaluation, context.measurement));
+  json.close();
+  write_fit(evaluation, context, json);
+  for (const char* part :
+       {"bench", "filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
+    json.null(part);
+  }
   json.close();
   out.line();
 }

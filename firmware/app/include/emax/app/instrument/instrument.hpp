@@ -241,7 +241,8 @@ class Instrument {
 };
 
 // Of its own: settings, console, status.
-static_assert(sizeof(Instrument) <= sizeof(Evaluation) + sizeof(EvaluationWorkspace) +
+static_assert(!kHasDefaultCapacities ||
+              sizeof(Instrument) <= sizeof(Evaluation) + sizeof(EvaluationWorkspace) +
                                         sizeof(Sweep) + sizeof(FrequencyResponse) +
                                         std::size_t{9} * 1024);
 
