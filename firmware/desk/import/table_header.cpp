@@ -121,6 +121,7 @@ class NameReader final {
       return;
     }
     const Role target = role_ == Role::kIgnored ? role_of_unit(before) : role_;
+    column_.is_assumed = role_ == Role::kIgnored;
     column_.role = target == Role::kAmplitude ? Role::kAmplitudeUncertainty
                    : target == Role::kPhase   ? Role::kPhaseUncertainty
                                               : Role::kIgnored;
@@ -185,6 +186,25 @@ Column read_name(const std::string& cell, Role before) {
   return column;
 }
 
+bool is_named(const std::vector<Column>& columns, Role role) {
+  return std::any_of(columns.begin(), columns.end(), [role](const Column& column) {
+    return column.role == role && !column.is_assumed;
+  });
+}
+
+// An uncertainty that does not say of what is not that of which there is a column by name.
+void settle_assumptions(std::vector<Column>& columns) {
+  for (Column& column : columns) {
+    if (!column.is_assumed || !is_named(columns, column.role)) {
+      continue;
+    }
+    const bool is_amplitude = column.role == Role::kAmplitudeUncertainty;
+    const Role other = is_amplitude ? Role::kPhaseUncertainty : Role::kAmplitudeUncertainty;
+    column.role = is_named(columns, other) ? column.role : other;
+    column.is_assumed = false;
+  }
+}
+
 }  // namespace
 
 Column read_column_name(const std::string& cell) { return read_name(cell, Role::kIgnored); }
@@ -197,6 +217,7 @@ Header read_header(const std::vector<std::string>& cells) {
     const Role role = header.columns.back().role;
     before = role == Role::kAmplitude || role == Role::kPhase ? role : before;
   }
+  settle_assumptions(header.columns);
   const std::size_t count = header.columns.size();
   const bool has_frequency = column_of(header.columns, Role::kFrequency) < count;
   const bool has_amplitude = column_of(header.columns, Role::kAmplitude) < count;

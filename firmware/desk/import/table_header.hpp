@@ -26,6 +26,7 @@ struct Column {
   std::string unit_spelling;  ///< What stands behind the name; empty if nothing does.
   bool is_omega = false;      ///< The name is that of an angular frequency.
   bool is_lag = false;        ///< The name says lag: positive where the output is late.
+  bool is_assumed = false;    ///< An uncertainty that does not say of what.
   bool is_standard = false;   ///< A standard uncertainty (k = 1), not an expanded one.
 };
 

