@@ -27,6 +27,7 @@
 #include "desk/cli/stop_request.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/rounding.hpp"
+#include "desk/files/safe_directory.hpp"
 #include "desk/files/text_file.hpp"
 
 namespace emax::host {
@@ -158,6 +159,11 @@ class CertificateFile final {
 
   // Before the long work.
   Problem open() {
+    if (!path_.empty() && desk::is_irregular(path_)) {
+      return bad_input(
+          "--out: " + printable(path_) +
+          ": not a regular file; expected the name of a new file or of one to replace");
+    }
     file_ = path_.empty() ? nullptr : std::fopen(temporary().c_str(), "wbx");
     return file_ == nullptr && !path_.empty()
                ? bad_input("--out: " + printable(path_) + ": " + std::strerror(errno) +
@@ -176,8 +182,9 @@ class CertificateFile final {
     errno = 0;
     const bool closed = std::fclose(file_) == 0;
     file_ = nullptr;
-    const bool done =
-        sink.error() == 0 && closed && std::rename(temporary().c_str(), path_.c_str()) == 0;
+    const bool done = sink.error() == 0 && closed && desk::sync_file(temporary()) &&
+                      !desk::is_irregular(path_) &&
+                      std::rename(temporary().c_str(), path_.c_str()) == 0;
     if (!done) {
       const int error = sink.error() != 0 ? sink.error() : errno;
       std::remove(temporary().c_str());
@@ -402,8 +409,9 @@ Problem run_certify(Span<const std::string_view> arguments) {
   options.report.settings.trend_count = 0;
   static app::Evaluation evaluation;
   CertificateFile file(options.out_path);
-  Problem problem = find_energy(options.report, evaluation);
-  if (problem || (problem = file.open())) {
+  Problem problem = file.open();
+  problem = problem ? problem : find_energy(options.report, evaluation);
+  if (problem) {
     return problem;
   }
   const ModalModel model = evaluation.model();
@@ -421,13 +429,16 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.proven.energy_v2s = evaluation.energy_v2s();
   result.seconds = seconds_since(start);
   result.certificate_path = options.out_path;
-  if ((problem = file.write(result.proven))) {
-    return problem;
+  // What has been proven is printed, whatever becomes of the file.
+  const Problem unwritten = file.write(result.proven);
+  if (unwritten) {
+    result.certificate_path.clear();
   }
   FileSink sink(stdout);
   app::TextWriter out(sink);
   options.report.json ? write_json(result, out) : write_text(result, out);
-  return check_output(sink);
+  problem = check_output(sink);
+  return unwritten ? unwritten : problem;
 }
 
 std::string help_on_certify() {
@@ -440,7 +451,9 @@ whatever its shape. The longer it runs the tighter the bound; Ctrl-C ends it
 early with what is proven by then.
 
   --model S,f0,beta      the device; or
-  --points FILE          measured points, as for emax report
+  --points FILE          measured points, as for emax report, with its options
+                         --reference-uncertainty, --uncertainty, --input-units,
+                         --channel-delay, --invert and --damping
   --order L              order of the reference filter, 2 to 15 (default 10)
   --cutoff HZ            its cutoff frequency (-3 dB) in Hz (default 1000)
   --gain auto|NUMBER     its gain in V/(m/s^2); auto is S (default auto)

@@ -32,7 +32,7 @@ constexpr Table kTables[] = {
 Problem add_tables(const app::Evaluation& evaluation, OutputFiles& files) {
   for (const Table& table : kTables) {
     if (table.needs_points && evaluation.source() != app::Source::kPoints) {
-      files.drop(table.name);
+      files.set_aside(table.name);  // It may be the only record of a measurement.
       continue;
     }
     Problem problem =
@@ -129,16 +129,14 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   const auto points = [&](app::TextWriter& out) {
     write_measured_points_csv(*context.measurement, out);
   };
+  // A complete report, which alone has a signal, is worth more than what a fault leaves.
+  if (files.has("signal.csv")) {
+    files.set_prefix("failed_");
+  }
   Problem problem = files.add("report.txt", text);
   problem = problem ? problem : files.add("results.json", results);
   problem = problem ? problem : files.add("report.html", page);
   problem = problem ? problem : files.add("frequency_response.csv", points);
-  for (const Table& table : kTables) {
-    if (!table.needs_points) {
-      files.drop(table.name);
-    }
-  }
-  drop_pictures(files);
   return problem ? problem : files.commit();
 }
 

@@ -164,12 +164,12 @@ Problem print(Write write) {
 // The files and the text of a measurement that has led to no result: what there is.
 Problem keep(const app::ReportContext& context, const app::Evaluation* refused, bool json,
              OutputFiles* files) {
-  if (Problem problem =
-          files != nullptr ? write_fault_files(context, refused, *files) : Problem{}) {
-    return problem;
-  }
-  return json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
-              : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+  const Problem problem =
+      files != nullptr ? write_fault_files(context, refused, *files) : Problem{};
+  const Problem printed =
+      json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
+           : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+  return problem ? problem : printed;
 }
 
 // The fault, and in the same line what became of what there is.
@@ -180,6 +180,8 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
   Problem problem = fault;
   if (const Problem kept = keep(results.context, refused, json, files)) {
     problem.line += kept.line.empty() ? "" : "; " + kept.line;
+  } else if (files != nullptr && !files->prefix().empty()) {
+    problem.line += "; its files begin with " + files->prefix() + ", complete ones are kept";
   }
   return problem;
 }
@@ -240,13 +242,15 @@ Problem run_report(Span<const std::string_view> arguments) {
     return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
   }
   Problem remark;
-  if (Problem problem =
-          files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{}) {
-    return problem;
+  const Problem unwritten =
+      files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
+  // A measurement that no file holds is at least printed.
+  if (unwritten && !(unwritten.status == ExitStatus::kFault && options.measures())) {
+    return unwritten;
   }
-  const Problem problem = options.json
-                              ? print([&](app::TextWriter& out) { write_results(results, out); })
-                              : print([&](app::TextWriter& out) { write_text(results, out); });
+  Problem problem = options.json ? print([&](app::TextWriter& out) { write_results(results, out); })
+                                 : print([&](app::TextWriter& out) { write_text(results, out); });
+  problem = unwritten ? unwritten : problem;
   return problem ? problem : remark;
 }
 

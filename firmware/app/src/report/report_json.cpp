@@ -291,8 +291,8 @@ void write_fit(const Evaluation& evaluation, const ReportContext& context,
   const WlspFit& fit = evaluation.fit().result();
   json.open("fit");
   json.words("determined", name_of(judgement.determined));
-  json.number("beta", fit.model.damping);
-  json.number("ubeta", fit.u_damping);
+  write_number_or_null("beta", fit.u_sensitivity > 0.0, fit.model.damping, json);
+  write_number_or_null("ubeta", fit.u_sensitivity > 0.0, fit.u_damping, json);
   json.integer("unknown_phases", fit.unknown_phases);
   if (context.read_as != nullptr) {
     json.words("read_as", context.read_as);
