@@ -142,7 +142,7 @@ class BadPoints(ProgramTest):
         (self.directory / "folder").mkdir()
         self.refuse(["report", "--points", "missing.csv"], "emax: missing.csv: ", "No such file", "expected a table")
         self.refuse(["report", "--points", "missing/x.csv"], "emax: missing/x.csv: ", "No such file")
-        self.refuse(["report", "--points", "folder"], "emax: folder: ", "Is a directory", "expected a CSV file")
+        self.refuse(["report", "--points", "folder"], "emax: folder: ", "Is a directory", "expected a table")
         self.refuse(["report", "--points", "x" * 5000], "emax: xxx", "name too long")
         self.refuse(["report", "--points", "a\nb"], "emax: a?b: ")
 
@@ -701,7 +701,8 @@ class Files(ProgramTest):
         (self.directory / "out/notes.txt").write_text("mine")
         report = self.succeed("report", *MODEL, *QUICK, "--out", "out")
         self.assertEqual((self.directory / "out/report.txt").read_text(), report)
-        self.assertEqual(sorted(os.listdir(self.directory / "out")), sorted([*FILES, "notes.txt"]))
+        self.assertEqual(sorted(os.listdir(self.directory / "out")),
+                         sorted([*FILES, "frequency_response.1.csv", "notes.txt"]))
 
     def test_directories_that_cannot_be_written(self):
         self.write(["x"], "file")

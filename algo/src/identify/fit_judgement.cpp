@@ -7,6 +7,11 @@ namespace emax {
 namespace {
 
 constexpr double kCoverage = 2.0;
+// A damping below the least one by more than this is no scatter any more: one draw in 30 000.
+constexpr double kImpossible = 4.0;
+// An estimate far below zero leaves so much of u above it, near what Feldman and Cousins (Phys.
+// Rev. D 57 (1998) 3873) give for 95 %.
+constexpr double kLeastShare = 0.5;
 
 bool is_sensitivity_alone(const WlspFit& fit) noexcept {
   return fit.u_mu[0] > 0.0 && fit.mu[0] > kCoverage * fit.u_mu[0] &&
@@ -64,7 +69,9 @@ FitJudgement constrained(const WlspFit& fit) noexcept {
   judgement.u_sensitivity = sqrt(fit.covariance[0][0] - by_s * fit.covariance[0][2]);
   judgement.u_natural_frequency_hz = sqrt(fit.covariance[1][1] - by_f0 * fit.covariance[1][2]);
   judgement.damping_low = kMinDamping;
-  judgement.damping_high = permitted(fit.model.damping + kCoverage * fit.u_damping);
+  const double high = fit.model.damping + kCoverage * fit.u_damping;
+  const double least = kMinDamping + kLeastShare * fit.u_damping;
+  judgement.damping_high = permitted(high > least ? high : least);
   judgement.sensitivity_slope = by_s;
   judgement.frequency_slope_hz = by_f0;
   return judgement;
@@ -88,8 +95,8 @@ FitJudgement judge(const WlspFit& fit) noexcept {
   if (fit.model.damping - kCoverage * fit.u_damping >= kMinDamping) {
     return whole(fit);
   }
-  return fit.model.damping + kCoverage * fit.u_damping >= kMinDamping ? constrained(fit)
-                                                                      : FitJudgement{};
+  return fit.model.damping + kImpossible * fit.u_damping >= kMinDamping ? constrained(fit)
+                                                                        : FitJudgement{};
 }
 
 }  // namespace emax

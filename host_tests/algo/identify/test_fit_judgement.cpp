@@ -170,7 +170,8 @@ TEST(Judgement, PointsToAFifthOfTheResonanceLeaveTheDampingOpen) {
   EXPECT_NEAR(judgement.damping_high, 0.005 + 2.0 * fit.result().u_damping, 1e-10);
 }
 
-// The constrained estimate has the least chi-square of all devices with that damping.
+// The constrained estimate has the least chi-square of all devices with that damping, to half an
+// uncertainty: the equations are linear in mu, so not quite in S, f0 and beta.
 TEST(Judgement, NearestDampingIsAConstrainedFit) {
   Points given = piezo();
   given.scatter = 1.0;
@@ -187,7 +188,7 @@ TEST(Judgement, NearestDampingIsAConstrainedFit) {
     }
     EXPECT_EQ(judgement.device.damping, emax::kMinDamping);
     const double least = fit.chi_square_of(judgement.device);
-    for (const double by : {-0.5, 0.5}) {
+    for (const double by : {-1.0, 1.0}) {
       Accelerometer moved = judgement.device;
       moved.sensitivity += by * judgement.u_sensitivity;
       EXPECT_GT(fit.chi_square_of(moved), least);
@@ -195,6 +196,33 @@ TEST(Judgement, NearestDampingIsAConstrainedFit) {
       moved.natural_frequency_hz += by * judgement.u_natural_frequency_hz;
       EXPECT_GT(fit.chi_square_of(moved), least);
     }
+  }
+}
+
+// The permitted range is never empty while scatter may explain the estimate, up to 4 u below.
+TEST(Judgement, RangeOfDampingsByTheEstimate) {
+  WlspFit fit;
+  fit.mu[0] = fit.mu[2] = 1.0;
+  fit.u_mu[0] = fit.u_mu[2] = 0.01;
+  fit.u_sensitivity = 0.01;
+  fit.u_damping = 0.01;
+  fit.covariance[2][2] = 1e-4;
+  const struct {
+    double damping;
+    Determined determined;
+    double high;
+  } cases[] = {{0.0202, Determined::kAll, 0.0},
+               {0.0200, Determined::kAllButDamping, 0.04},
+               {-0.01, Determined::kAllButDamping, 0.01},
+               {-0.03, Determined::kAllButDamping, 0.0051},
+               {-0.0398, Determined::kAllButDamping, 0.0051},
+               {-0.0400, Determined::kNothing, 0.0}};
+  for (const auto& expected : cases) {
+    fit.model = {1.0, 1e4, expected.damping};
+    fit.status = expected.damping > 0.0 ? Status::kOk : Status::kNotPhysical;
+    const FitJudgement judgement = judge(fit);
+    EXPECT_EQ(judgement.determined, expected.determined) << expected.damping;
+    EXPECT_NEAR(judgement.damping_high, expected.high, 1e-12) << expected.damping;
   }
 }
 

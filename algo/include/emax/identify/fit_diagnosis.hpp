@@ -31,8 +31,8 @@ struct DiagnosisWorkspace {
 
 /// Tries the causes where a fit has failed for a damping below zero or has a chi2/dof above 3:
 /// takes the sign, each of a range of delays and each of a range of corners out of the phases and
-/// magnitudes, and fits again. A cause is named where that brings chi2/dof down to a tenth or below 1.5, or,
-/// for the sign, where the model holds and only its damping is negative.
+/// magnitudes, and fits again. A cause is named where that brings chi2/dof down to a tenth or
+/// below 1.5, or, for the sign, where the model holds and only its damping is negative.
 ///
 /// Delays up to eight periods of the highest frequency, corners from a hundredth of the lowest
 /// frequency to ten times it. About 800 fits: 10 ms per 100 points on a PC. The magnitudes alone

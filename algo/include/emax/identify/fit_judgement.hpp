@@ -35,8 +35,9 @@ struct FitJudgement {
 inline constexpr double kMaxCutDamping = 0.999;
 
 /// Judges by two standard uncertainties: f0 is undetermined where mu3 - 2 u(mu3) <= 0 <= mu3 + 2
-/// u(mu3), the damping where beta - 2 u(beta) < kMinDamping <= beta + 2 u(beta); where only
-/// magnitudes are known, by beta^2 in place of beta.
+/// u(mu3), the damping where beta - 2 u(beta) < kMinDamping <= beta + 4 u(beta); where only
+/// magnitudes are known, by beta^2 in place of beta. Its range ends at beta + 2 u(beta), and at
+/// kMinDamping + u(beta)/2 at least.
 ///
 /// @param[in] fit The result of `Wlsp::fit()`, whatever its status.
 FitJudgement judge(const WlspFit& fit) noexcept;
