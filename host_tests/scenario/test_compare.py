@@ -262,6 +262,15 @@ class CompareRefusals(Comparing, ProgramTest):
             with self.subTest(arguments=arguments):
                 self.refuse(["compare", *arguments], words)
 
+    def test_hundreds_of_thousands_of_names(self):
+        # Compared with one another, these took nine minutes; the program's time limit here is 100 s.
+        text = '{"version":"0.1.0",' + ",".join(f'"{i}":0' for i in range(300_000)) + "}"
+        self.save("many.json", text)
+        self.save("other.json", result())
+        self.refuse(["compare", "many.json", "other.json"], "many.json: holds no maximum energy")
+        self.save("twice.json", text[:-1] + ',"7":1}')
+        self.refuse(["compare", "twice.json", "other.json"], "twice.json:1:", "a name for the second time")
+
     def test_unequal_conditions(self):
         self.save("a.json", result())
         for (group, name), (value, words) in CONDITIONS.items():
