@@ -5,6 +5,7 @@ The tables in data/tables were made from stated sensors with seeded noise; no me
 usage: test_tables.py PROGRAM DATA_DIRECTORY [unittest arguments]
 """
 
+import cmath
 import math
 import random
 
@@ -219,6 +220,36 @@ class TablesThereAndBack(Tables):
         name = self.write([self.NAMES] + [",".join(map(repr, row)) for row in rows])
         text = self.succeed("report", "--points", name, *QUICK)
         self.assertIn("A delay of 0.53 ms of the device's channel would bring chi2/dof from", text)
+
+
+class TablesByChance(Tables):
+    """Devices far above their points, drawn ten times each."""
+
+    FREQUENCIES = [20, 31.5, 63, 125, 160, 250, 500, 630, 800, 1000, 1250, 1600, 2000, 2500, 3150, 4000, 5000, 6300,
+                   8000, 10000]
+
+    def draw(self, device, chance):
+        s, f0, beta = device
+        rows = []
+        for f in self.FREQUENCIES:
+            k = s / (1 + 2j * beta * f / f0 - (f / f0) ** 2)
+            amplitude, phase = abs(k), math.degrees(cmath.phase(k))
+            rows.append([f, amplitude * chance.gauss(1, 0.005), phase + chance.gauss(0, 0.5), 0.01 * amplitude, 1])
+        return self.write([TablesThereAndBack.NAMES] + [",".join(map(repr, row)) for row in rows])
+
+    def test_every_draw_gives_a_report(self):
+        chance = random.Random(5)
+        common = ["--limit", "1", "--gain", "0.0102", "--time", "0.001", *QUICK]
+        for device in [(0.0102, 55000, 0.005), (0.0102, 55000, 0.01), (0.0102, 30000, 0.01)]:
+            true = self.json_of("--model", ",".join(map(str, device)), *common)["energy"]["E"]
+            inside = []
+            for _ in range(10):
+                results = self.json_of("--points", self.draw(device, chance), *common)
+                if results["fit"]["determined"] == "all but beta":
+                    low, high = results["fit"]["E_range"]
+                    inside.append(low <= true <= high)
+            # Of 10 at 95 % fewer than 7 happens once in 1000.
+            self.assertGreaterEqual(sum(inside), len(inside) - 3, device)
 
 
 class TablesThatAreRefused(Tables):
