@@ -83,6 +83,8 @@ TEST(Magnitudes, FitWithoutPhasesFindsTheDevice) {
   EXPECT_NEAR(result.model.damping, 0.3182, 1e-9);
   EXPECT_EQ(result.dof, 37U);
   EXPECT_EQ(result.unknown_phases, 40U);
+  // Both are least squares of the same magnitudes; with 0.5 % their linear laws agree to that.
+  EXPECT_NEAR(result.u_damping2 / (2.0 * 0.3182 * result.u_damping), 1.0, 0.005);
   EXPECT_EQ(judge(result).determined, Determined::kAll);
 }
 
@@ -197,6 +199,29 @@ TEST(Judgement, NearestDampingIsAConstrainedFit) {
       EXPECT_GT(fit.chi_square_of(moved), least);
     }
   }
+}
+
+// By hand: S moves by its covariance with the damping over the damping's variance, as f0 does.
+TEST(Judgement, ParametersFollowTheDampingByTheirCovariance) {
+  WlspFit fit;
+  fit.status = Status::kNotPhysical;
+  fit.mu[0] = fit.mu[2] = 1.0;
+  fit.u_mu[0] = fit.u_mu[2] = 0.01;
+  fit.model = {1.0, 1e4, -0.0099};
+  fit.u_sensitivity = 0.01;
+  fit.u_natural_frequency_hz = 100.0;
+  fit.u_damping = 0.01;
+  fit.covariance[0][0] = 1e-4;
+  fit.covariance[1][1] = 1e4;
+  fit.covariance[2][2] = 1e-4;
+  fit.covariance[0][2] = fit.covariance[2][0] = 0.6e-4;
+  fit.covariance[1][2] = fit.covariance[2][1] = -0.8;
+  const FitJudgement judgement = judge(fit);
+  ASSERT_EQ(judgement.determined, Determined::kAllButDamping);
+  EXPECT_NEAR(judgement.device.sensitivity, 1.0 + 0.6 * 0.01, 1e-15);
+  EXPECT_NEAR(judgement.device.natural_frequency_hz, 1e4 - 80.0, 1e-10);
+  EXPECT_NEAR(judgement.u_sensitivity, 0.008, 1e-15);
+  EXPECT_NEAR(judgement.u_natural_frequency_hz, 60.0, 1e-10);
 }
 
 // The permitted range is never empty while scatter may explain the estimate, up to 4 u below.

@@ -203,6 +203,9 @@ TEST(Import, RepeatedRowsAreAveragedWithTheirScatter) {
   // s = 0.1 sqrt(2) of two rows, so the mean adds 0.1 to the stated 0.02.
   EXPECT_NEAR(point.u_amplitude, std::sqrt(0.02 * 0.02 + 0.1 * 0.1), 1e-15);
   EXPECT_NEAR(point.u_phase_rad, kDegree * std::sqrt(0.5 * 0.5 + 1.0), 1e-14);
+  const ImportedPoints turned =
+      imported("30,1,-100,0.1,1\n30,1,90,0.1,1\n40,1,0,0.1,1\n50,1,0,0.1,1\n");
+  EXPECT_NEAR(turned.points.points()[0].phase_rad, -185.0 * kDegree, 1e-14);
   EXPECT_NE(found.understanding.find("1 of them the mean of repeated rows"), std::string::npos);
 }
 
