@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "emax/app/base/json_writer.hpp"
@@ -116,8 +117,24 @@ bool differs_by_percent(const Comparison& comparison) {
   return false;
 }
 
+// Spreadsheets take a field that begins with one of these for a formula and run it; an apostrophe
+// before it makes it text. Control characters become blanks.
+std::string harmless(const std::string& text) {
+  constexpr std::string_view kFormula = "=+-@";
+  std::string field;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    field += byte < ' ' || byte == 0x7F ? ' ' : c;
+  }
+  const std::size_t first = field.find_first_not_of(' ');
+  const bool is_formula =
+      first != std::string::npos && kFormula.find(field[first]) != std::string_view::npos;
+  return is_formula ? "'" + field : field;
+}
+
 // RFC 4180: quotes around all that might be more than a word.
-void write_field(const std::string& text, TextWriter& out) {
+void write_field(const std::string& words, TextWriter& out) {
+  const std::string text = harmless(words);
   if (text.find_first_of("\",\r\n") == std::string::npos) {
     out.text(text.c_str());
     return;

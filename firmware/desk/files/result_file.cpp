@@ -9,6 +9,7 @@
 #include "emax/base/elementary.hpp"
 
 #include "desk/cli/console.hpp"
+#include "desk/cli/stop_request.hpp"
 #include "desk/files/json_reader.hpp"
 #include "desk/files/text_file.hpp"
 
@@ -111,7 +112,11 @@ Problem read_result(const std::string& path, Result& result) {
     return problem;
   }
   JsonValue root;
-  if (const JsonError error = parse_json(text, root); error.problem != nullptr) {
+  const JsonError error = parse_json(text, root);
+  if (stop_requested()) {
+    return stopped();
+  }
+  if (error.problem != nullptr) {
     return bad_input(result.file + ":" + std::to_string(error.line) + ":" +
                      std::to_string(error.column) + ": " + error.problem + "; " + kExpectation);
   }

@@ -208,6 +208,15 @@ void append_figure(std::string& html, const char* kind, const std::string& name,
   html += std::string("<div") + kind + "><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
 }
 
+std::string range_of(const EvaluationResults& results) {
+  if (!results.has_cut_range) {
+    return "not found";
+  }
+  const EnergyFormat format(results.cut_high_v2s, 0.0);
+  return format.number(results.cut_low_v2s) + " to " + format.number(results.cut_high_v2s) +
+         format.unit();
+}
+
 void append_energies(std::string& html, const EvaluationResults& results) {
   const double energy = results.energy_v2s();
   const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
@@ -216,6 +225,11 @@ void append_energies(std::string& html, const EvaluationResults& results) {
     const EnergyFormat format(energy, 0.0);
     append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
                   format.number(energy) + format.unit());
+    if (results.is_damping_open()) {
+      append_figure(html, "", "Range of E, as the points leave the damping open",
+                    range_of(results));
+      return;
+    }
     append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }

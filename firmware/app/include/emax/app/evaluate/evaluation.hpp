@@ -95,6 +95,10 @@ class Evaluation {
   /// trials. After a start, until the evaluation is done.
   void lend_trial_store(Span<double> store) noexcept;
 
+  /// The damping to hold where a table has magnitudes alone that do not determine it
+  /// (`Wlsp::give_damping()`); 0 for none. For the starts to come, on the same results.
+  void give_damping(double damping) noexcept { results_.fit.give_damping(damping); }
+
   /// The number of draws for the covariance of the fit.
   static constexpr std::uint32_t kFitDraws = 10000;
   /// The fraction of the peak of k within which it has settled.
@@ -124,6 +128,9 @@ class Evaluation {
   void step_energy() noexcept;
   void begin_bound() noexcept;
   void step_bound() noexcept;
+  Status take_fit(Status fit_status) noexcept;
+  void begin_cut_range() noexcept;
+  void step_cut_range() noexcept;
   void begin_trials() noexcept;
   void step_prediction() noexcept;
   void step_adaptive() noexcept;
