@@ -50,15 +50,6 @@ TEST(Printable, CountsCharactersAndTearsNone) {
   }
 }
 
-TEST(Shortened, LeavesOutTheMiddle) {
-  EXPECT_EQ(shortened("accelerometer 12", 16), "accelerometer 12");
-  EXPECT_EQ(shortened("accelerometer 12", 11), "acce...r 12");
-  EXPECT_EQ(shortened("accelerometer 12", 10), "acce... 12");
-  EXPECT_EQ(shortened("accelerometer 12", 4), "a...");
-  EXPECT_EQ(shortened("accelerometer 12", 3), "...");
-  EXPECT_EQ(shortened(repeated("\u00FC", 9), 8), repeated("\u00FC", 3) + "..." + "\u00FC\u00FC");
-}
-
 TEST(CharactersIn, CountsNoBytes) {
   EXPECT_EQ(characters_in(""), 0U);
   EXPECT_EQ(characters_in("abc"), 3U);

@@ -9,8 +9,10 @@ import os
 import re
 from xml.etree import ElementTree
 
+from browser import Browser
 from program_test import DATA, ProgramTest, main
 
+ENERGY = ("--by", "energy")
 SVG = "{http://www.w3.org/2000/svg}"
 DEVICES = ["piezo_a", "piezo_b", "damped_c"]
 CONDITIONS = {
@@ -21,23 +23,58 @@ CONDITIONS = {
     ("energy", "T"): (0.004, "T is 0.004 s, and 0.002 s in"),
     ("energy", "criterion"): ("difference", "criterion is difference, and ise in"),
     ("energy", "method"): ("paper", "method is paper, and best in"),
-    ("monte_carlo", "probability"): (0.9, "probability is 0.9, and 0.95 in"),
-    ("monte_carlo", "distribution"): ("normal", "distribution is normal, and box in"),
+    ("uncertainty", "probability"): (0.9, "probability is 0.9, and 0.95 in"),
 }
 
 
-def result(energy=5e-3, u=1e-5, bound=None, device=None, serial=None) -> dict:
-    """A results.json with what the comparison reads of it."""
+def figure(percent, u, unit, bound=None) -> dict:
+    """An in-band figure in percent of S a; `unit` is T (S a)^2 in V^2 s."""
+    energy = unit * (percent / 100) ** 2
+    found = {"E": energy, "rms_percent": percent, "switch_times": [], "bound_percent": bound, "bound": None}
+    u_energy = None if u is None or percent == 0 else 2 * energy * u / percent
+    for suffix, value, standard in [("", energy, u_energy), ("_percent", percent, u)]:
+        has_u = standard is not None
+        found |= {
+            "u" + suffix: standard,
+            "U" + suffix: 2 * standard if has_u else None,
+            "interval" + suffix: [value - 1.96 * standard, value + 1.96 * standard] if has_u else None,
+        }
+    return found
+
+
+def result(energy=5e-3, u=1e-5, bound=None, device=None, serial=None, *, matched=1.0, band=5.0, u_band=0.01,
+           S=2.0, a=1, refused=None, fit_warns=False, simulated=False) -> dict:
+    """A results.json with what the comparison reads of it; `u` is that of E, `u_band` in percent of S a."""
+    unit = 0.002 * (S * a) ** 2
+    in_band = figure(band, u_band, unit) | {"matched": None, "matched_refused": refused}
+    if refused is None:
+        in_band["matched"] = figure(matched, u_band, unit) | {"delay_s": 2.5e-5, "epsilon_percent": 1e-13}
     return {
         "version": "0.1.0",
         "labels": {"device": device, "serial": serial},
-        "model": {"S": 2.0},
-        "filter": {"order": 10, "cutoff": 1000, "gain": 2.0, "gain_mode": "auto"},
-        "energy": {"criterion": "ise", "method": "best", "T": 0.002, "a": 1, "E": energy, "bound": bound},
-        "monte_carlo": None
+        "model": {"S": S},
+        "filter": {"order": 10, "cutoff": 1000, "gain": S, "gain_mode": "auto"},
+        "energy": {"criterion": "ise", "method": "best", "T": 0.002, "a": a, "E": energy, "bound": bound},
+        "band": in_band,
+        "ideal": {"E": 5.08e-3, "rms_percent": 148.2106},
+        "uncertainty": None
         if u is None
-        else {"probability": 0.95, "distribution": "box", "u": u, "interval": [energy - 2 * u, energy + 2 * u]},
+        else {"distribution": "normal", "probability": 0.95, "u": u, "U": 2 * u,
+              "interval": [energy - 2 * u, energy + 2 * u], "shortest": [energy - 2 * u, energy + 2 * u], "redrawn": 0},
+        "monte_carlo": None,
+        "warnings": [{"about": "fit", "text": "chi2"}] if fit_warns else [],
+        "simulated": simulated,
     }
+
+
+def of_box(energy, u, distribution="box") -> dict:
+    """A result as it was before the block of the uncertainty: with trials, and nothing of the band."""
+    old = result(energy, None)
+    for name in ["band", "ideal", "uncertainty", "warnings", "simulated"]:
+        del old[name]
+    old["monte_carlo"] = {"probability": 0.95, "distribution": distribution, "u": u,
+                          "interval": [energy - u, energy + u]}
+    return old
 
 
 def ranks_of(energies, uncertainties) -> list[tuple[int, int]]:
@@ -56,43 +93,57 @@ class Comparing:
         (self.directory / name).write_text(content if isinstance(content, str) else json.dumps(content))
         return name
 
-    def compare(self, *results, options=("--json",)):
+    def compare(self, *results, by="energy"):
         names = [self.save(f"{i}.json", content) for i, content in enumerate(results)]
-        return json.loads(self.succeed("compare", *names, *options))
+        return json.loads(self.succeed("compare", *names, "--by", by, "--json"))
 
 
 class CompareDevices(Comparing, ProgramTest):
     def test_three_devices(self):
+        """By the energy alone: reports without figures of the band are compared by that."""
         names = []
         for device in DEVICES:
             points = ["--points", DATA / f"devices/{device}.csv", "--reference-uncertainty", "0.5"]
             text = self.succeed("report", *points, "--limit", "1", "--trials", "20000", "--trend", "none", "--json")
             names.append(self.save(f"{device}.json", text))
         loaded = [json.loads((self.directory / name).read_text()) for name in names]
-        found = json.loads(self.succeed("compare", *names, "--json"))
+        found = json.loads(self.succeed("compare", *names, "--by", "energy", "--json"))
         # The parameters of a box have a standard deviation of u/sqrt(3).
-        energies = {r["energy"]["E"]: math.sqrt(3) * r["monte_carlo"]["u"] for r in loaded}
+        energies = {
+            r["energy"]["E"]: (r.get("uncertainty") or {"u": math.sqrt(3) * r["monte_carlo"]["u"]})["u"] for r in loaded
+        }
         ascending = sorted(energies)
         self.assertEqual([device["E"] for device in found["devices"]], ascending)
         self.assertEqual([device["file"] for device in found["devices"]][0], "damped_c.json")
         ranks = ranks_of(ascending, [energies[e] for e in ascending])
         self.assertEqual([(d["rank_best"], d["rank_worst"]) for d in found["devices"]], ranks)
         self.assertEqual(ranks, [(1, 1), (2, 3), (2, 3)])
-        text = self.succeed("compare", *names)
+        text = self.succeed("compare", *names, "--by", "energy")
         self.assertIn("damped_c.json and piezo_a.json: told apart", text)
         self.assertIn("piezo_a.json and piezo_b.json: CANNOT BE TOLD APART", text)
         self.assertLessEqual(max(map(len, text.splitlines())), 130)
 
     def test_ranks_and_pairs(self):
-        energies, uncertainties = [5.00e-3, 5.05e-3, 5.10e-3, 6e-3], [1.2e-5, 1.2e-5, 1.2e-5, 1e-6]
+        energies, uncertainties = [5.00e-3, 5.05e-3, 5.10e-3, 6e-3], [2e-5, 2e-5, 2e-5, 1e-6]
         found = self.compare(*[result(e, u) for e, u in zip(energies, uncertainties)])
-        expected = ranks_of(energies, [math.sqrt(3) * u for u in uncertainties])
+        expected = ranks_of(energies, uncertainties)
         # Neighbours cannot be told apart, the ends of the chain can.
         self.assertEqual(expected, [(1, 2), (1, 3), (2, 3), (4, 4)])
         self.assertEqual([(d["rank_best"], d["rank_worst"]) for d in found["devices"]], expected)
         self.assertEqual([pair["told_apart"] for pair in found["pairs"]], [False, False, True])
         self.assertAlmostEqual(found["pairs"][0]["difference"], 5e-5, delta=1e-18)
-        self.assertAlmostEqual(found["pairs"][0]["expanded"], 2 * math.sqrt(6) * 1.2e-5, delta=1e-18)
+        self.assertAlmostEqual(found["pairs"][0]["U"], 2 * math.sqrt(2) * 2e-5, delta=1e-18)
+
+    def test_uncertainty_of_the_box_where_there_is_no_other(self):
+        found = self.compare(of_box(5e-3, 1e-5), of_box(6e-3, 2e-5, "normal"), result(7e-3, 3e-5))
+        for device, u in zip(found["devices"], [math.sqrt(3) * 1e-5, 2e-5, 3e-5]):
+            self.assertAlmostEqual(device["u"], u, delta=1e-18)
+            self.assertAlmostEqual(device["U"], 2 * u, delta=1e-18)
+        # An interval over the box is none of E.
+        self.assertEqual([device["interval"] is None for device in found["devices"]], [True, False, False])
+        text = " ".join(self.succeed("compare", *(f"{i}.json" for i in range(3)), "--by", "energy").split())
+        self.assertIn("Note: u(E) is that over the box of the trials times the root of 3, without the correlation of S, f0 "
+                      "and beta, for 0.json.", text)
 
     def test_figures(self):
         device = self.compare(result(8e-6), result(9e-6))["devices"][0]
@@ -109,13 +160,14 @@ class CompareDevices(Comparing, ProgramTest):
         found = self.compare(result(5e-3, None), result(9e-3), result(2e-2))
         self.assertEqual([(d["rank_best"], d["rank_worst"]) for d in found["devices"]], [(1, 3), (1, 2), (2, 3)])
         self.assertIsNone(found["devices"][0]["u"])
-        text = self.succeed("compare", "0.json", "1.json")
-        self.assertIn("CANNOT BE RANKED: no uncertainty of E is known for one of them", text)
+        text = self.succeed("compare", "0.json", "1.json", *ENERGY)
+        self.assertIn("CANNOT BE RANKED: no uncertainty is known for one of them", text)
         self.assertNotIn("nan", text)
 
     def test_equal_devices_share_a_rank(self):
-        found = self.compare(result(), result())
-        self.assertEqual([(d["rank_best"], d["rank_worst"]) for d in found["devices"]], [(1, 2), (1, 2)])
+        for by in ["matched", "band", "energy"]:
+            found = self.compare(result(), result(), by=by)
+            self.assertEqual([(d["rank_best"], d["rank_worst"]) for d in found["devices"]], [(1, 2), (1, 2)])
 
     def test_negative_energy_has_no_rms(self):
         both = [result(-1e-3), result(2e-3)]
@@ -123,17 +175,147 @@ class CompareDevices(Comparing, ProgramTest):
             each["energy"]["criterion"] = "difference"
         found = self.compare(*both)
         self.assertEqual([d["rms"] is None for d in found["devices"]], [True, False])
-        self.assertNotIn("nan", self.succeed("compare", "0.json", "1.json"))
+        self.assertNotIn("nan", self.succeed("compare", "0.json", "1.json", *ENERGY))
 
     def test_note_where_percent_disagrees(self):
         other = result(6e-3)
         other["model"]["S"] = 3.0
         self.compare(result(5e-3), other)
-        self.assertIn("in percent of S a the order is another one", self.succeed("compare", "0.json", "1.json"))
+        self.assertIn("of S a the order is another one", self.succeed("compare", "0.json", "1.json", *ENERGY))
         # Not by a difference that the uncertainties do not carry.
         other["energy"]["E"] = 5.001e-3
         self.compare(result(5e-3), other)
-        self.assertNotIn("another one", self.succeed("compare", "0.json", "1.json"))
+        self.assertNotIn("another one", self.succeed("compare", "0.json", "1.json", *ENERGY))
+
+
+class CompareInBand(Comparing, ProgramTest):
+    """By the figures of the band, which do not depend on S and a."""
+
+    def ranks(self, found) -> list[tuple]:
+        return [(d["file"], d["rank_best"], d["rank_worst"]) for d in found["devices"]]
+
+    def test_matched_is_the_default(self):
+        one, other = result(5e-3, matched=2.0, band=3.0), result(4e-3, matched=1.0, band=6.0)
+        self.save("0.json", one)
+        self.save("1.json", other)
+        by_default = self.succeed("compare", "0.json", "1.json", "--json")
+        self.assertEqual(by_default, self.succeed("compare", "0.json", "1.json", "--by", "matched", "--json"))
+        found = json.loads(by_default)
+        self.assertEqual((found["asked_by"], found["ranked_by"]), ("matched", "matched"))
+        self.assertEqual(self.ranks(found), [("1.json", 1, 1), ("0.json", 2, 2)])
+        self.assertEqual(self.ranks(self.compare(one, other, by="band")), [("0.json", 1, 1), ("1.json", 2, 2)])
+        self.assertEqual(self.ranks(self.compare(one, other, by="energy")), [("1.json", 1, 1), ("0.json", 2, 2)])
+
+    def test_numbers_of_the_figure_that_ranks(self):
+        files = [result(matched=1.196, band=5.755, u_band=0.004), result(matched=2.0, band=6.0, u_band=0.003)]
+        files[0]["band"]["matched"]["bound_percent"] = 1.25
+        device = self.compare(*files, by="matched")["devices"][0]
+        self.assertEqual([device[name] for name in ["value", "u", "U", "bound"]], [1.196, 0.004, 0.008, 1.25])
+        self.assertEqual(device["interval"], [1.196 - 1.96 * 0.004, 1.196 + 1.96 * 0.004])
+        self.assertEqual([device[name] for name in ["matched_percent", "band_percent", "delay_s", "ideal_percent"]],
+                         [1.196, 5.755, 2.5e-5, 148.2106])
+        pair = self.compare(*files, by="band")["pairs"][0]
+        self.assertAlmostEqual(pair["difference"], 0.245, delta=1e-15)
+        self.assertAlmostEqual(pair["U"], 2 * 0.005, delta=1e-17)
+        text = self.succeed("compare", "0.json", "1.json")
+        # Two digits of U, and as many decimals of the rest.
+        self.assertRegex(text, r"0\.json +1\.1960 +5\.7550 +\d+\.\d+ +0\.0080 +1\.1882 to 1\.2038 +1\.250\n")
+        self.assertIn("an ideal sensor has 148.2 %", text)
+
+    def test_ten_times_the_sensitivity_is_the_same_rank(self):
+        files = [result(5e-3, matched=1.2), result(5e-1, 1e-3, matched=1.2, S=20.0, a=3), result(1e-6, matched=1.5, S=0.1)]
+        found = self.compare(*files, by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2), ("2.json", 3, 3)])
+        self.save("1.json", result(5e-1, 1e-3, matched=1.2, S=20.0))
+        found = self.compare(files[0], result(5e-1, 1e-3, S=20.0), by="energy")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 1), ("1.json", 2, 2)])
+
+    def test_damping_in_percent_not_in_energy(self):
+        """4073 Hz with beta 0.7 and 0.01 (0.13 and 1.62 % with the delay out): E favours the smaller S."""
+        poor = result(1e-6, 1e-8, matched=1.62, band=1.65, S=0.01)
+        good = result(5e-3, matched=0.13, band=11.75, S=1.0)
+        self.assertEqual(self.ranks(self.compare(poor, good, by="matched")), [("1.json", 1, 1), ("0.json", 2, 2)])
+        self.assertEqual(self.ranks(self.compare(poor, good, by="band")), [("0.json", 1, 1), ("1.json", 2, 2)])
+        self.assertEqual(self.ranks(self.compare(poor, good, by="energy")), [("0.json", 1, 1), ("1.json", 2, 2)])
+
+    def test_uncertainty_of_the_continued_filter_counts(self):
+        files = [result(matched=1.0), result(matched=1.04)]
+        self.assertTrue(self.compare(*files, by="matched")["pairs"][0]["told_apart"])
+        for each in files:
+            each["band"]["matched"]["epsilon_percent"] = 0.007
+        pair = self.compare(*files, by="matched")["pairs"][0]
+        self.assertEqual((pair["told_apart"], pair["epsilon"]), (False, 0.014))
+        for each, bound in zip(files, [1.03, None]):
+            each["band"]["matched"]["bound_percent"] = bound
+        self.assertFalse(self.compare(*files, by="matched")["pairs"][0]["proven"])
+
+    def test_matched_refused_for_one_is_refused_for_all(self):
+        words = "epsilon is 3.9 % of the figure,\nabove 1 %"
+        files = [result(matched=1.0, band=8.0), result(band=7.0, refused=words, device="B"), result(matched=3.0, band=6.0)]
+        found = self.compare(*files, by="matched")
+        self.assertEqual((found["asked_by"], found["ranked_by"]), ("matched", "band"))
+        self.assertEqual(self.ranks(found), [("2.json", 1, 1), ("1.json", 2, 2), ("0.json", 3, 3)])
+        self.assertEqual([d["matched_percent"] for d in found["devices"]], [3.0, None, 1.0])
+        text = " ".join(self.succeed("compare", "0.json", "1.json", "2.json").split())
+        self.assertIn("WARNING: All are ranked by the in-band error with the sensor's delay: there is no figure with the "
+                      "delay taken out for B (epsilon is 3.9 % of the figure,?above 1 %).", text)
+        self.assertIn("Ranked by in-band error with the sensor's delay", text)
+        self.assertNotIn("All are ranked", self.succeed("compare", "0.json", "1.json", "2.json", "--by", "band"))
+
+    def test_marked_devices_are_not_compared(self):
+        """Two measurements of one device of which one has a bump of 1 %: chi-square warns of it."""
+        files = [result(matched=1.0, device="good"), result(matched=1.5, device="bump", fit_warns=True),
+                 result(matched=2.0, device="other")]
+        for by in ["matched", "band", "energy"]:
+            for i, each in enumerate(files):
+                each["energy"]["E"], each["band"]["rms_percent"] = (1 + i) * 1e-3, 5.0 + i
+            found = self.compare(*files, by=by)
+            self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 3), ("2.json", 2, 3)])
+            self.assertEqual([(p["compared"], p["told_apart"], p["proven"]) for p in found["pairs"]],
+                             [(False, False, False)] * 2)
+            self.assertEqual(found["pairs"][0]["not_compared"], "chi-square of the fit of bump warns")
+            self.assertEqual([d["fit_warns"] for d in found["devices"]], [False, True, False])
+            text = self.succeed("compare", "0.json", "1.json", "2.json", "--by", by)
+            self.assertIn("good and bump: not compared: chi-square of the fit of bump warns", text)
+            self.assertNotIn("told apart:", text)
+            self.assertRegex(text, r"\n  1-3   bump    fit +\S")
+            self.assertNotIn("SIMULATION", text)
+
+    def test_simulated_bench(self):
+        files = [result(matched=1.0, device="good"), result(matched=3.0, device="toy", simulated=True)]
+        pair = self.compare(*files, by="matched")["pairs"][0]
+        self.assertEqual((pair["told_apart"], pair["not_compared"]), (False, "the bench of toy was simulated"))
+        files[1] = result(matched=3.0, device="toy", simulated=True, fit_warns=True)
+        files[0]["band"]["matched"]["bound_percent"] = 1.1
+        found = self.compare(*files, by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2)])
+        self.assertEqual([d["simulated"] for d in found["devices"]], [False, True])
+        self.assertFalse(found["pairs"][0]["proven"])
+        text = self.succeed("compare", "0.json", "1.json")
+        self.assertIn("not compared: chi-square of the fit of toy warns; the bench of toy was", text)
+        self.assertRegex(text, r"(?m)^COMPARISON OF .*\n  SIMULATION: not every result was measured on a real bench$")
+        self.assertRegex(text, r"\n  1-2   toy     fit sim +\S")
+        self.compare(files[1], files[1] | {"labels": {}}, by="matched")
+        self.assertIn("SIMULATION: no result was measured", self.succeed("compare", "0.json", "1.json"))
+
+    def test_other_warnings_are_no_marks(self):
+        files = [result(matched=1.0), result(matched=3.0)]
+        files[0]["warnings"] = [{"about": "monte_carlo", "text": "fit"}]
+        self.assertTrue(self.compare(*files, by="matched")["pairs"][0]["told_apart"])
+
+    def test_marks_of_results_that_have_none_yet(self):
+        """chi2/dof against what one fit in a hundred exceeds (1.66 for 40 degrees of freedom), and the bench's truth."""
+        for chi2, warns in [(1.5 * 40, False), (835.0 * 40, True)]:
+            old = of_box(6e-3, 1e-5)
+            old["model"] |= {"chi2": chi2, "dof": 40}
+            self.assertEqual(self.compare(of_box(5e-3, 1e-5), old)["devices"][1]["fit_warns"], warns)
+        old = of_box(6e-3, 1e-5) | {"bench": {"seed": 1, "truth": {"S": 1.0}}}
+        self.assertEqual([d["simulated"] for d in self.compare(of_box(5e-3, 1e-5), old)["devices"]], [False, True])
+
+    def test_no_uncertainty_in_band(self):
+        found = self.compare(result(matched=1.0, u_band=None), result(matched=2.0), by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2)])
+        self.assertIn("CANNOT BE RANKED", self.succeed("compare", "0.json", "1.json"))
 
 
 class CompareOutput(Comparing, ProgramTest):
@@ -151,23 +333,48 @@ class CompareOutput(Comparing, ProgramTest):
     def test_csv_and_odd_labels(self):
         odd = 'say "hi", <b>&amp;</b>\nnext'
         self.compare(result(5e-3, device=odd, serial="12;3"), result(6e-3, None, device="x" * 10_000))
-        rows = list(csv.DictReader(io.StringIO(self.succeed("compare", "0.json", "1.json", "--csv"), newline="")))
+        text = self.succeed("compare", "0.json", "1.json", "--csv", *ENERGY)
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
         self.assertEqual([row["device"] for row in rows], [odd.replace("\n", " "), "x" * 10_000])
         self.assertEqual([row["serial"] for row in rows], ["12;3", ""])
         self.assertEqual([float(row["E"]) for row in rows], [5e-3, 6e-3])
         self.assertEqual([row["u"] for row in rows][1], "")
-        text = self.succeed("compare", "0.json", "1.json")
+        text = self.succeed("compare", "0.json", "1.json", *ENERGY)
         self.assertIn('say "hi", <b>&amp;</b>?next 12;3', text)
-        self.assertLess(len(text), 3000)
+        self.assertLess(len(text), 4000)
+
+    def test_labels_are_no_formulas_and_no_control_characters(self):
+        odd = ["=cmd|' /C calc'!A0", "+1", "-2", "@SUM(1)", " =3", "a\x1b[31mb\tc\x7f", "\u0085\u202e=4"]
+        self.compare(*(result((5 + i) * 1e-3, device=name, serial=name) for i, name in enumerate(odd)))
+        names = [f"{i}.json" for i in range(len(odd))]
+        text = self.run_program("compare", *names, "--csv").stdout.decode()
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+        expected = ["'" + name for name in odd[:-2]] + ["a [31mb c ", "'  =4"]
+        self.assertEqual(sorted(row["device"] for row in rows), sorted(expected))
+        self.assertEqual(sorted(row["serial"] for row in rows), sorted(expected))
+        self.assertFalse(any(ord(c) < 32 for c in text.replace("\n", "")))
+
+    def test_csv_has_the_figure_that_ranks_and_the_others(self):
+        files = [result(5e-3, bound=6e-3, matched=1.5, S=3.0, fit_warns=True, simulated=True), result(6e-3, matched=2.0, S=1.5)]
+        self.compare(*files)
+        for by, value, unit in [("matched", "1.5", "value"), ("band", "5", "value"), ("energy", "0.005", "E")]:
+            rows = list(csv.DictReader(io.StringIO(self.succeed("compare", "0.json", "1.json", "--csv", "--by", by))))
+            row = next(row for row in rows if row["file"] == "0.json")
+            self.assertEqual((row["ranked_by"], row["value"], row[unit]), (by, value, value))
+            self.assertEqual((row["matched_percent"], row["band_percent"], row["E"]), ("1.5", "5", "0.005"))
+            self.assertEqual((row["S"], row["a"], row["mark"]), ("3", "1", "fit sim"))
+            self.assertEqual(float(row["U"]), 2 * float(row["u"]))
+            self.assertLess(float(row["low"]), float(row["value"]))
+            self.assertEqual(row["bound"], "0.006" if by == "energy" else "")
 
     def test_columns_stand_below_one_another(self):
         long = "a long name " * 5
         names = ["\u00c4\u00d6\u00dc \u0416\u2126", "plain", long + "17", long + "18", "\U0001F600" * 300]
-        columns = [("E in V^2 s", r"5\.\d{8}e-03"), ("u(E)", r"1\.73e-05"), ("bound", r"6\.0000e-03")]
+        columns = [("E in V^2 s", r"5\.\d{3}e-03"), ("U(E)", r"2\.0e-05"), ("bound", r"6\.000e-03")]
         for count in [5, 120]:  # Ranks of up to seven characters.
             for i in range(count):
-                self.save(f"{i}.json", result(5e-3 + 1e-9 * i, bound=6e-3, device=names[i % 5]))
-            text = self.run_program("compare", *(f"{i}.json" for i in range(count))).stdout.decode()
+                self.save(f"{i}.json", result(5e-3 + 1e-9 * i, bound=6e-3, device=names[i % 5], fit_warns=i == 3))
+            text = self.run_program("compare", *(f"{i}.json" for i in range(count)), *ENERGY).stdout.decode()
             lines = text.splitlines()
             self.assertLessEqual(max(map(len, lines)), 130)
             head = next(line for line in lines if line.startswith("  rank"))
@@ -177,59 +384,25 @@ class CompareOutput(Comparing, ProgramTest):
                 # The end of each heading is that of its numbers.
                 for title, number in columns:
                     self.assertRegex(row[: head.index(title) + len(title)], f" {number}$")
-            # The serial number at the end of a name is still there.
-            self.assertTrue(any(re.search(r"\.\.\.[a-z ]*long name 17 ", row) for row in rows), rows[2])
+            # A name goes on below, to its end.
+            table = text.split("  rank ")[1].split("\n\n")[0]
+            self.assertRegex(table, r"\n +(a long |long |name |a )+17\n")
+            self.assertNotIn("...a", table)
 
     def test_bound_in_fewer_digits_is_a_bound(self):
         self.compare(result(bound=5.12341e-3), result(6e-3))
-        self.assertIn(" 5.1235e-03 ", self.succeed("compare", "0.json", "1.json"))
+        self.assertIn(" 5.124e-03", self.succeed("compare", "0.json", "1.json", *ENERGY))
 
     def test_files(self):
         self.compare(result(), result(6e-3))
         printed = self.succeed("compare", "0.json", "1.json", "--out", "out")
         self.assertEqual((self.directory / "out/comparison.txt").read_text(), printed)
         self.assertEqual(sorted(os.listdir(self.directory / "out")), [
-            "comparison.csv", "comparison.gp", "comparison.json", "comparison.svg", "comparison.txt"])
+            "comparison.csv", "comparison.gp", "comparison.html", "comparison.json", "comparison.svg",
+            "comparison.txt"])
         for option, name in [("--csv", "comparison.csv"), ("--json", "comparison.json")]:
             self.assertEqual((self.directory / "out" / name).read_text(),
                              self.succeed("compare", "0.json", "1.json", option))
-
-    def test_picture(self):
-        odd = "it's <b>\u03b2 & 'co'</b>"
-        self.compare(result(5e-3, bound=5.5e-3, device=odd), result(6e-3, None, device="\u00fc" * 100))
-        self.run_program("compare", "0.json", "1.json", "--out", "out")
-        drawn = ["".join(text.itertext()).strip()
-                 for text in ElementTree.parse(self.directory / "out/comparison.svg").iter(SVG + "text")]
-        self.assertIn("1-2  " + odd, drawn)
-        self.assertIn("1-2  " + "\u00fc" * 11 + "..." + "\u00fc" * 10, drawn)
-        self.assertIn("E in mV\u00b2 s", drawn)
-
-    def test_picture_says_the_conditions(self):
-        both = [result(-5e-3), result(6e-3)]
-        for each in both:
-            each["energy"] |= {"criterion": "difference", "method": "paper"}
-        self.compare(*both)
-        self.succeed("compare", "0.json", "1.json", "--out", "out")
-        picture = (self.directory / "out/comparison.svg").read_text(encoding="utf-8")
-        self.assertIn("filter of order 10, 1000 Hz, energy difference, paper's method<", html.unescape(picture))
-        self.assertRegex(picture, r">\s*\u2212\d")  # The axis has minus signs.
-        self.assertNotRegex(picture, r">\s*-\d")
-
-    def test_picture_of_many_shows_the_first(self):
-        for i in range(50):
-            self.save(f"{i}.json", result(5e-3 + 1e-4 * i, 1e-6))
-        self.succeed("compare", *(f"{i}.json" for i in range(50)), "--out", "out")
-        picture = (self.directory / "out/comparison.svg").read_text()
-        self.assertIn("40  39.json", picture)
-        self.assertNotIn("41  40.json", picture)
-
-    def test_no_gnuplot(self):
-        self.compare(result(), result(6e-3))
-        done = self.run_program("compare", "0.json", "1.json", "--out", "out", env={"PATH": "/nowhere"})
-        self.assertEqual(done.returncode, 0)
-        self.assert_one_line(done.stderr, "gnuplot")
-        self.assertNotIn("comparison.svg", os.listdir(self.directory / "out"))
-        self.assertIn("comparison.gp", os.listdir(self.directory / "out"))
 
     def test_full_disk(self):
         self.compare(result(), result(6e-3))
@@ -239,8 +412,168 @@ class CompareOutput(Comparing, ProgramTest):
     def test_help(self):
         text = self.succeed("compare", "--help")
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
-        for option in ["--csv", "--json", "--out DIR"]:
+        for option in ["--by FIGURE", "--csv", "--json", "--out DIR"]:
             self.assertIn(f"  {option} ", text)
+        self.assertIn("(default matched)", text)
+        self.assertIn("comparison.html", text)
+
+
+class ComparePictures(Comparing, ProgramTest):
+    def draw(self, *results, options=()):
+        names = [self.save(f"{i}.json", content) for i, content in enumerate(results)]
+        done = self.run_program("compare", *names, "--out", "out", *options)
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        root = ElementTree.parse(self.directory / "out/comparison.svg").getroot()
+        return ["".join(text.itertext()).strip() for text in root.iter(SVG + "text")]
+
+    def test_names_and_axis(self):
+        odd = "it's <b>\u03b2 & 'co'</b>"
+        drawn = self.draw(result(5e-3, bound=5.5e-3, device=odd), result(6e-3, None, device="'quoted'"), options=ENERGY)
+        self.assertIn("1-2  " + odd, drawn)
+        self.assertIn("1-2  'quoted'", drawn)
+        self.assertIn("E in 10\u207b\u00b3 V\u00b2 s", drawn)
+        drawn = self.draw(result(matched=1.0), result(matched=2.0))
+        self.assertIn("1  0.json", drawn)
+        self.assertIn("rms error in % of S\u00b7a", drawn)
+
+    def test_names_are_wrapped_and_cut_at_the_end_only(self):
+        long = "Accelerometer of a maker with a rather long name, type 4711"
+        drawn = self.draw(result(matched=1.0, device=long, serial="SN 12"), result(matched=2.0, device="\u00fc" * 300))
+        at = next(i for i, line in enumerate(drawn) if line.startswith("1  "))
+        self.assertEqual(" ".join(drawn[at:at + 3]), "1  " + long + " SN 12")
+        # A name without blanks: as much as three lines hold, and that there was more.
+        lines = [line for line in drawn if "\u00fc" in line]
+        self.assertEqual(len(lines), 3)
+        self.assertEqual([line.strip("2 ").strip("\u00fc") for line in lines], ["", "", "\u2026"])
+
+    def test_lines_begin_with_a_quote(self):
+        """gnuplot 5.4 reads a doubled quote at the start of a string as its end."""
+        drawn = self.draw(result(matched=1.0, device="a" * 26 + " 'b' c"), result(matched=2.0, device="''"))
+        self.assertIn("'b' c", drawn)
+        self.assertIn("2  ''", drawn)
+
+    def test_axis_is_logarithmic_where_values_span_decades(self):
+        for largest, logarithmic in [(0.29, False), (0.31, True), (30.0, True)]:
+            drawn = self.draw(result(matched=0.01, u_band=0.02), result(matched=largest, u_band=1e-4))
+            script = (self.directory / "out/comparison.gp").read_text()
+            self.assertEqual("set logscale x" in script, logarithmic)
+        # Marks of four decades, and the bar that would go below 0 ends on the axis.
+        numbers = [float(text) for text in drawn if re.fullmatch(r"[0-9.]+", text)]
+        self.assertTrue({0.01, 0.1, 1, 10} <= set(numbers), numbers)
+        row = script.split("$devices << END\n")[1].splitlines()[0].split()
+        self.assertEqual(float(row[0]), 0.01)
+        self.assertTrue(0 < float(row[1]) < 0.01)
+        # Nothing below 0 on it.
+        self.draw(result(matched=0.0), result(matched=1.0))
+        self.assertNotIn("set logscale x", (self.directory / "out/comparison.gp").read_text())
+
+    def test_marks(self):
+        drawn = self.draw(result(matched=1.0, fit_warns=True), result(matched=1.1), result(matched=1.2, simulated=True))
+        for words in ["fit warns: not compared", "simulated: not compared", "the same, not compared"]:
+            self.assertIn(words, drawn)
+        self.assertTrue(drawn[0].startswith("SIMULATION: ") or any(d.startswith("SIMULATION: ") for d in drawn))
+        drawn = self.draw(result(matched=1.0), result(matched=1.1))
+        self.assertFalse(any("compared" in line or "SIMULATION" in line for line in drawn), drawn)
+        drawn = self.draw(result(matched=1.0, fit_warns=True), result(matched=1.1, fit_warns=True))
+        self.assertIn("the same, not compared", drawn)
+
+    def test_conditions(self):
+        both = [result(-5e-3), result(6e-3)]
+        for each in both:
+            each["energy"] |= {"criterion": "difference", "method": "paper"}
+        self.draw(*both, options=ENERGY)
+        picture = (self.directory / "out/comparison.svg").read_text(encoding="utf-8")
+        self.assertIn("filter of order 10, 1000 Hz, energy difference, paper's method<", html.unescape(picture))
+        self.assertRegex(picture, r">\s*\u2212\d")  # The axis has minus signs.
+        self.assertNotRegex(picture, r">\s*-\d")
+
+    def test_picture_of_many_shows_the_first(self):
+        drawn = self.draw(*(result(matched=1.0 + i, u_band=1e-3) for i in range(50)))
+        self.assertIn("40  39.json", drawn)
+        self.assertNotIn("41  40.json", drawn)
+
+    def test_no_gnuplot(self):
+        self.compare(result(), result(6e-3))
+        done = self.run_program("compare", "0.json", "1.json", "--out", "out", env={"PATH": "/nowhere"})
+        self.assertEqual(done.returncode, 0)
+        self.assert_one_line(done.stderr, "gnuplot")
+        self.assertNotIn("comparison.svg", os.listdir(self.directory / "out"))
+        self.assertIn("comparison.gp", os.listdir(self.directory / "out"))
+        page = (self.directory / "out/comparison.html").read_text(encoding="utf-8")
+        self.assertIn("No picture: gnuplot was missing", page)
+        self.assertTrue(page.endswith("</html>\n"))
+
+
+class ComparePage(Comparing, ProgramTest):
+    NASTY = "\"q\" 'q' <b>&amp; <script>alert(1)</script> ^2 +- 1e-05 \u202e \\n javascript:x http://example.org/"
+
+    def page(self, *results, options=()) -> str:
+        names = [self.save(f"{i}.json", content) for i, content in enumerate(results)]
+        done = self.run_program("compare", *names, "--out", "out", *options)
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        return (self.directory / "out/comparison.html").read_text(encoding="utf-8")
+
+    def test_figures_and_verdicts(self):
+        page = self.page(result(matched=1.196, u_band=0.004, device="DJB A/1800/V"), result(matched=2.0, device="B"))
+        self.assertIn("<title>Comparison of 2 accelerometers - emax</title>", page)
+        self.assertIn("<dt>Smallest error</dt><dd>DJB A/1800/V</dd>", page)
+        self.assertIn("<dd>1.1960 ± 0.0080 % of S a</dd>", page)
+        self.assertIn("<th scope=\"row\">DJB A/1800/V and B</th><td>told apart: the difference is 0.804 % of S a", page)
+        self.assertIn("<svg", page)
+        self.assertNotIn("SIMULATION", page)
+        page = self.page(result(matched=1.196, device="A"), result(matched=1.197, device="B"))
+        self.assertIn("<dt>Smallest error: the results do not say which of</dt><dd>A and B</dd>", page)
+        self.assertIn("<strong>CANNOT BE TOLD APART</strong>", page)
+
+    def test_powers_of_ten_as_in_print(self):
+        page = self.page(result(5e-3, 1e-5), result(6e-3, 1e-5), options=ENERGY)
+        self.assertIn("<td>5.000 × 10<sup>−3</sup></td>", page)
+        self.assertNotRegex(html.unescape(page.split("<main>")[1].split("<svg")[0]), r"\de-\d")
+
+    def test_marks_are_at_the_top(self):
+        page = self.page(result(matched=1.0, device="A"), result(matched=2.0, device="B", simulated=True),
+                         result(matched=3.0, device="C", fit_warns=True))
+        self.assertIn("<title>Comparison of 3 accelerometers (simulation) - emax</title>", page)
+        start = page.split("</header>")[1]
+        self.assertTrue(start.startswith("\n<p class=\"warning\">SIMULATION: not every result was measured"), start[:80])
+        self.assertIn("<p class=\"warning\">Not compared, because chi-square of the fit warns: C.", page)
+        self.assertIn("<strong>not compared</strong>: the bench of B was simulated.", page)
+        self.assertNotIn("told apart:", page)
+
+    def test_nasty_labels_and_nothing_from_outside(self):
+        page = self.page(result(matched=1.0, device=self.NASTY, serial=self.NASTY, refused="<i>\n" + self.NASTY),
+                         result(matched=1.0001, device=self.NASTY + "2", fit_warns=True))
+        for part in ["<script", "<b>", "<i>", "<link rel=\"style", "@import", "url(http", " src=", " onload", "\u202e"]:
+            self.assertNotIn(part, page.replace("xlink:href", ""))
+        self.assertNotRegex(page, r"(?:href|src)\s*=\s*[\"'](?!#|data:,)")
+        cell = page.split("class=\"name\">")[2].split("</th>")[0]
+        shown = self.NASTY.replace("\u202e", "?")
+        self.assertEqual(html.unescape(cell)[:40], shown[:40])
+        with Browser() as browser:
+            for width in [1000, 390]:
+                browser.open(self.directory / "out/comparison.html", width)
+                self.assertEqual(browser.complaints(), [])
+                self.assertEqual(len(browser.requests()), 1)
+                self.assertLessEqual(browser.evaluate("document.documentElement.scrollWidth"), width)
+                self.assertEqual(browser.evaluate("document.scripts.length"), 0)
+            self.assertIn(shown[:30], browser.evaluate("document.querySelector('.numbers tbody th').textContent"))
+
+    def test_prints_on_a4(self):
+        self.page(*(result(matched=1.0 + i, device=f"Accelerometer {i}", fit_warns=i == 1) for i in range(12)))
+        with Browser() as browser:
+            browser.open(self.directory / "out/comparison.html", 680)  # What A4 has between its margins.
+            browser.call("Emulation.setEmulatedMedia", media="print")
+            for part in [".wide", "main"]:
+                wide = browser.evaluate(f"document.querySelector('{part}').scrollWidth")
+                self.assertLessEqual(wide, browser.evaluate(f"document.querySelector('{part}').clientWidth"))
+            pdf = browser.pdf()
+        # 210 mm by 297 mm in points of 1/72 inch.
+        boxes = re.findall(rb"/MediaBox \[0 0 ([0-9.]+) ([0-9.]+)\]", pdf)
+        self.assertTrue(boxes)
+        for box in boxes:
+            self.assertAlmostEqual(float(box[0]), 595.3, delta=1)
+            self.assertAlmostEqual(float(box[1]), 841.9, delta=1)
+        self.assertLessEqual(len(boxes), 4)
 
 
 class CompareRefusals(Comparing, ProgramTest):
@@ -258,6 +591,8 @@ class CompareRefusals(Comparing, ProgramTest):
             ("a.json", "missing.json"): "missing.json: No such file",
             ("a.json", "."): "Is a directory",
             ("a.json", "b.json", "--out", "a.json/such/directory"): "--out: a.json/such/directory",
+            ("a.json", "b.json", "--by", "xi"): '--by: "xi" given; expected matched, band or energy',
+            ("a.json", "b.json", "--by"): "--by: no value; expected matched, band or energy",
         }.items():
             with self.subTest(arguments=arguments):
                 self.refuse(["compare", *arguments], words)
@@ -278,19 +613,37 @@ class CompareRefusals(Comparing, ProgramTest):
                 other = result(6e-3)
                 other[group][name] = value
                 self.save("b.json", other)
-                self.refuse(["compare", "a.json", "b.json", "--out", "out"], "emax: b.json: " + words, "a.json",
-                            "expected the same conditions")
+                for by in ["matched", "band", "energy"] if name != "a" else ["energy"]:
+                    self.refuse(["compare", "a.json", "b.json", "--out", "out", "--by", by], "emax: b.json: " + words,
+                                "a.json", "expected the same conditions")
 
-    def test_trials_differ_behind_a_device_without_any(self):
-        for name, value in [("probability", 0.9), ("distribution", "normal")]:
-            other = result(7e-3)
-            other["monte_carlo"][name] = value
-            for file, each in zip("abc", [result(5e-3, None), result(6e-3), other]):
-                self.save(file, each)
-            self.refuse(["compare", "a", "b", "c"], f"emax: c: {name} is {value}", "in b")
+    def test_criterion_in_words(self):
+        for criterion, words in [("ise", "integral-square error"), ("difference", "energy difference"),
+                                 ("band", "in-band error"), ("\n\u00fc", "?\u00fc")]:
+            both = [result(), result(6e-3)]
+            for name, each in zip("ab", both):
+                each["energy"]["criterion"] = criterion
+                self.save(name, each)
+            printed = self.run_program("compare", "a", "b").stdout.decode()
+            self.assertRegex(printed, rf"\n  Criterion +{re.escape(words)}, the best signal found\n")
+
+    def test_results_without_figures_of_the_band(self):
+        self.save("a.json", result())
+        self.save("b.json", of_box(6e-3, 1e-5))
+        for by in ["matched", "band"]:
+            self.refuse(["compare", "a.json", "b.json", "--by", by],
+                        "emax: b.json: holds no in-band figures", "run emax report anew, or give --by energy")
+        self.assertIn("b.json", self.succeed("compare", "a.json", "b.json", *ENERGY))
+
+    def test_probability_behind_a_device_without_any(self):
+        other = result(7e-3)
+        other["uncertainty"]["probability"] = 0.9
+        for file, each in zip("abc", [result(5e-3, None), result(6e-3), other]):
+            self.save(file, each)
+        self.refuse(["compare", "a", "b", "c", *ENERGY], "emax: c: probability is 0.9", "in b")
         self.save("c", result(7e-3))
-        self.assertIn("interval (95 %)", self.succeed("compare", "a", "b", "c"))
-        conditions = json.loads(self.succeed("compare", "a", "b", "c", "--json"))["conditions"]
+        self.assertIn("interval (95 %)", self.succeed("compare", "a", "b", "c", *ENERGY))
+        conditions = json.loads(self.succeed("compare", "a", "b", "c", "--json", *ENERGY))["conditions"]
         self.assertEqual(conditions["probability"], 0.95)
 
     def test_fixed_gain(self):
@@ -337,12 +690,16 @@ class CompareRefusals(Comparing, ProgramTest):
 
     def test_missing_members(self):
         self.save("a.json", result())
-        for group, name in [*CONDITIONS, ("model", "S"), ("filter", "gain"), ("monte_carlo", "interval")]:
-            with self.subTest(member=name):
-                other = result()
-                del other[group][name]
-                self.save("b.json", other)
-                self.refuse(["compare", "a.json", "b.json"], f"b.json: {group}.{name} is no ")
+        matched = [("band.matched", name) for name in ["rms_percent", "U_percent", "epsilon_percent", "delay_s"]]
+        for group, name in [*CONDITIONS, ("model", "S"), ("filter", "gain"), ("uncertainty", "interval"),
+                            ("band", "rms_percent"), *matched]:
+            for replace in [None, "text"]:
+                with self.subTest(group=group, member=name, replace=replace):
+                    other = result()
+                    place = other["band"]["matched"] if group == "band.matched" else other[group]
+                    place[name] = {} if replace else None
+                    self.save("b.json", other)
+                    self.refuse(["compare", "a.json", "b.json"], f"b.json: {group}.{name} is no ")
 
     def test_large_file(self):
         self.save("a.json", result())

@@ -226,6 +226,27 @@ TEST(EnergySearch, ASensorNextToTheFilterIsRefused) {
   }
 }
 
+TEST(InBandFigures, RoundingDoesNotKeepASearchClimbing) {
+  // Modes cancel to 1e-3 of their sizes, so that in single precision pulses seem to gain for ever.
+  // Here it took up to 50000 steps, all turns that are allowed; the criterion of the paper some
+  // 500.
+  const auto run = std::make_unique<EnergySearch>();
+  const auto workspace = std::make_unique<GridWorkspace>();
+  for (const ErrorMeasure& measure : {kPlain, kMatched}) {
+    for (const double duration_s : {2e-3, 10e-3}) {
+      const ModalModel model = model_of(kPaperDevice, 10, measure);
+      SearchSettings settings;
+      settings.duration_s = duration_s;
+      ASSERT_EQ(run->start(model, settings), Status::kOk);
+      std::size_t steps = 0;
+      for (; !run->done(); ++steps) {
+        ASSERT_EQ(run->step(model, *workspace), Status::kOk);
+      }
+      EXPECT_LT(steps, 3000u);
+    }
+  }
+}
+
 TEST(InBandTrials, ReachTheMaximumOfACornerWithTheEstimatesDelay) {
   const ModalModel model = model_of(kPaperDevice, 10, kMatched);
   const Found best = search(model, 2e-3);
@@ -244,10 +265,11 @@ TEST(InBandTrials, ReachTheMaximumOfACornerWithTheEstimatesDelay) {
   ASSERT_EQ(moved.set_device(corner), Status::kOk);
   EXPECT_EQ(moved.delay_s(), model.delay_s());
   const double expected = search(moved, 2e-3).maximum.energy;
-  // The trial is the largest of several signals: it may find a little more than one search does.
-  const double found = trials->energy_of(corner, *workspace);
-  EXPECT_GE(found, (1.0 - 1e-9) * expected);
-  EXPECT_LE(found, (1.0 + 1e-6) * expected);
+  // The energy changes by 40 % over the box, so its polynomial may be off by what is nothing beside
+  // that: `tolerance()`, found at 38 places; elsewhere it may be a little more.
+  EXPECT_LT(trials->tolerance(), 1e-6);
+  EXPECT_NEAR(trials->energy_of(corner, *workspace), expected,
+              2.0 * trials->tolerance() * expected);
 }
 
 }  // namespace

@@ -4,14 +4,19 @@
 namespace emax {
 namespace {
 
-/// Iterates until the first rest; later ones count anew.
+/// Iterates until the first rest; they count anew at each rest that has gained.
 constexpr std::size_t kMaxIterations = 200;
 /// Pulses turned in one climb; no run has been seen to need as many.
 constexpr std::size_t kMaxTurns = 1000;
 /// Products that may find, at the end of a climb, that it goes on.
 constexpr std::size_t kMaxProducts = 64;
+/// Rests in a row that gain nothing. A gain that is real but less than the rounding of the energy
+/// may not show at once.
+constexpr std::size_t kMaxFruitless = 8;
 /// A product from scratch costs as much as this many stretches.
 constexpr std::size_t kMaxStretches = 12;
+/// Updates until their rounding has to go: it adds up, and energies would rise with it.
+constexpr std::size_t kMaxUpdates = 256;
 /// A quarter of the least gain of a pulse, as part of the energy, and as part of the diagonal.
 constexpr double kSmallestGain = 0.25e-7;
 constexpr float kSmallestGainOfDiagonal = 2e-5F;
@@ -94,6 +99,10 @@ void GridClimb::begin_update(Signs signs, Signs applied) noexcept {
   phase_ = Phase::kStretches;
   next_ = 0;
   at_end_ = {};
+  if (updates_ == kMaxUpdates) {
+    phase_ = Phase::kProduct;
+    return;
+  }
   std::size_t cell = 0;
   for (std::size_t stretches = 0; (cell = signs.first_difference(applied, cell)) != signs.size();
        cell = turned_end(signs, applied, cell)) {
@@ -134,7 +143,7 @@ std::size_t GridClimb::take_signs(Signs signs, Signs applied, Span<const float> 
     changed = changed || after != before;
     signs.set_word(word, after);
   }
-  if (changed && iterations_ < kMaxIterations) {
+  if (changed && iterations_ < kMaxIterations && fruitless_ < kMaxFruitless) {
     ++iterations_;
     begin_update(signs, applied);
     return size / 4 + 1;
@@ -152,7 +161,6 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
     has_rested_ = true;
     first_iterations_ = iterations_;
   }
-  iterations_ = 0;
   double energy = 0.0;
   for (std::size_t i = 0; i < signs.size();) {
     const bool positive = signs.is_positive(i);
@@ -163,8 +171,13 @@ void GridClimb::rest(Signs signs, Span<const float> product) noexcept {
     energy += static_cast<double>(positive ? sum : -sum);
   }
   energy_ = energy;
+  const double size = energy < 0.0 ? -energy : energy;
+  const bool is_higher = turns_ == 0 || energy > highest_ + kSmallestGain * size;
+  highest_ = is_higher ? energy : highest_;
+  fruitless_ = is_higher ? 0 : fruitless_ + 1;
+  iterations_ = is_higher ? 0 : iterations_;
   best_ = {};
-  const auto least = static_cast<float>(kSmallestGain * (energy < 0.0 ? -energy : energy));
+  const auto least = static_cast<float>(kSmallestGain * size);
   best_.gain = least > kSmallestGainOfDiagonal ? least : kSmallestGainOfDiagonal;
   next_ = 0;
   phase_ = Phase::kPulses;
@@ -218,7 +231,8 @@ std::size_t GridClimb::look_at_word(std::size_t word, std::uint32_t starts, cons
 }
 
 void GridClimb::turn_best(Signs signs, Signs applied) noexcept {
-  if (best_.width != 0 && turns_ < kMaxTurns) {
+  const bool is_over = turns_ == kMaxTurns || fruitless_ >= kMaxFruitless;
+  if (best_.width != 0 && !is_over) {
     ++turns_;
     for (std::size_t i = best_.cell; i < best_.cell + best_.width; ++i) {
       signs.turn(i);

@@ -41,11 +41,13 @@ void for_each_term(std::size_t degree, const Term& term) noexcept {
 
 }  // namespace
 
-CubeNodes::CubeNodes(std::size_t degree, const std::array<bool, 3>& axes) noexcept
+CubeNodes::CubeNodes(std::size_t degree, const std::array<bool, 3>& axes,
+                     std::size_t first_axis_nodes) noexcept
     : counts_{}, degree_(degree) {
   for (std::size_t a = 0; a < 3; ++a) {
     counts_[a] = axes[a] ? degree + 1 : 1;
   }
+  counts_[0] = counts_[0] < first_axis_nodes ? counts_[0] : first_axis_nodes;
 }
 
 std::array<std::size_t, 3> CubeNodes::index_on_axes(std::size_t index) const noexcept {

@@ -66,11 +66,17 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
     (void)model_.set_gain(estimate_.sensitivity);  // A device's sensitivity is a valid gain.
   }
   is_normal_ = draws.distribution() == Distribution::kNormal;
-  reach_ = draws.reach(is_normal_ ? kNormalReach : 1.0);
-  inverse_reach_ = 1.0 / reach_;
-  corner_ = is_normal_ ? kInverseRoot3 * reach_ : 1.0;
+  const double reach = draws.reach(is_normal_ ? kNormalReach : 1.0);
+  is_unit_ = reach == 1.0;
+  is_piece_ = false;
+  has_pieces_ = false;
+  is_accurate_ = false;
+  corner_ = is_normal_ ? kInverseRoot3 : 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
     axes_[a] = draws.moves(a, gain_follows);
+    middle_[a] = 0.0;
+    reach_[a] = reach;
+    inverse_reach_[a] = 1.0 / reach;
   }
   pool_.clear();
   pool_.add(0, best.signal);
@@ -103,8 +109,78 @@ void EnergyBranches::prepare(const DeviceDraws& draws, EnergySearch& search,
     case Phase::kChecks:
       step_checks(draws, workspace);
       return;
+    case Phase::kSeeds:
     case Phase::kReady:
       return;
+  }
+}
+
+void EnergyBranches::start_piece(const EnergyBranches& whole, const CubePoint& middle,
+                                 const CubePoint& half) noexcept {
+  model_ = whole.model_;
+  search_ = whole.search_;
+  estimate_ = whole.estimate_;
+  gain_follows_ = whole.gain_follows_;
+  is_normal_ = whole.is_normal_;
+  axes_ = whole.axes_;
+  middle_ = whole.from_point(middle);
+  is_unit_ = false;
+  is_piece_ = true;
+  is_accurate_ = false;
+  corner_ = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    reach_[a] = half[a] * whole.reach_[a];
+    inverse_reach_[a] = 1.0 / reach_[a];
+  }
+  pool_.clear();
+  degree_ = 0;
+  terms_ = 0;
+  tolerance_ = 0.0;
+  unsearched_ = 0;
+  pending_ = 0;
+  point_ = 0;
+  branch_ = 0;
+  is_refining_ = false;
+  phase_ = Phase::kSeeds;
+}
+
+void EnergyBranches::prepare_piece(const EnergyBranches& whole, const DeviceDraws& draws,
+                                   GridWorkspace& workspace) noexcept {
+  switch (phase_) {
+    case Phase::kSeeds:
+      step_seeds(whole, draws, workspace);
+      return;
+    case Phase::kMissing:
+      step_missing(draws, workspace);
+      return;
+    case Phase::kNodes:
+      step_nodes(draws, workspace);
+      return;
+    case Phase::kChecks:
+      step_checks(draws, workspace);
+      return;
+    case Phase::kKnown:
+    case Phase::kSearch:
+    case Phase::kReady:
+      return;
+  }
+}
+
+/// Takes what the whole's signals become in the middle of the piece.
+void EnergyBranches::step_seeds(const EnergyBranches& whole, const DeviceDraws& draws,
+                                GridWorkspace& workspace) noexcept {
+  if (!is_refining_) {
+    whole.pool_.load(branch_, search_.duration_s, workspace.refinement(), workspace.signal());
+    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(branch_))), draws.device_at(middle_),
+               workspace);
+  }
+  if (!step_refinement(workspace)) {
+    return;
+  }
+  pool_.offer(0, workspace.signal(), refiner_.result().energy);
+  if (++branch_ == whole.pool_.count()) {
+    branch_ = 0;
+    phase_ = Phase::kMissing;
   }
 }
 
@@ -116,11 +192,12 @@ double EnergyBranches::progress() const noexcept {
     case Phase::kKnown:
     case Phase::kSearch:
       return kSearches * static_cast<double>(point_) / static_cast<double>(kPlaces);
+    case Phase::kSeeds:
     case Phase::kMissing:
       return kSearches;
     case Phase::kNodes:
       return kSearches + (kNodes - kSearches) * static_cast<double>(point_) /
-                             static_cast<double>(CubeNodes(degree_, axes_).size());
+                             static_cast<double>(nodes().size());
     case Phase::kChecks:
       return kNodes + (1.0 - kNodes) * static_cast<double>(point_) / static_cast<double>(kChecks);
     case Phase::kReady:
@@ -160,14 +237,14 @@ void EnergyBranches::set_device(const Accelerometer& device) noexcept {
 }
 
 /// A corner on the axes that matter: bit a of the index is the side of axis a.
-DeviceDraws::Place EnergyBranches::corner(std::size_t index, double unit) const noexcept {
-  DeviceDraws::Place place = {};
+CubePoint EnergyBranches::corner(std::size_t index) const noexcept {
+  CubePoint point = {};
   for (std::size_t a = 0; a < 3; ++a) {
     if (axes_[a]) {
-      place[a] = (index >> a & 1U) != 0 ? unit : -unit;
+      point[a] = (index >> a & 1U) != 0 ? corner_ : -corner_;
     }
   }
-  return place;
+  return point;
 }
 
 /// Whether a corner is another one than those before it.
@@ -180,15 +257,15 @@ bool EnergyBranches::is_corner(std::size_t index) const noexcept {
   return true;
 }
 
-/// The estimate, then the corners.
+/// The estimate or the middle, then the corners.
 DeviceDraws::Place EnergyBranches::place_at(std::size_t index) const noexcept {
-  return index == 0 ? DeviceDraws::Place{} : corner(index - 1, corner_);
+  return index == 0 ? middle_ : from_point(corner(index - 1));
 }
 
 /// The corners, then Halton's sequence.
 CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
   if (index < kCorners) {
-    return corner(index, corner_ * inverse_reach_);
+    return corner(index);
   }
   constexpr std::size_t kBases[3] = {2, 3, 5};
   CubePoint point = {};
@@ -201,24 +278,36 @@ CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
 }
 
 DeviceDraws::Place EnergyBranches::from_point(const CubePoint& point) const noexcept {
-  return {reach_ * point[0], reach_ * point[1], reach_ * point[2]};
+  return {middle_[0] + reach_[0] * point[0], middle_[1] + reach_[1] * point[1],
+          middle_[2] + reach_[2] * point[2]};
 }
 
 CubePoint EnergyBranches::to_point(const DeviceDraws::Place& place) const noexcept {
-  if (reach_ == 1.0) {
+  if (is_unit_) {
     return place;
   }
-  return {inverse_reach_ * place[0], inverse_reach_ * place[1], inverse_reach_ * place[2]};
+  return {inverse_reach_[0] * (place[0] - middle_[0]), inverse_reach_[1] * (place[1] - middle_[1]),
+          inverse_reach_[2] * (place[2] - middle_[2])};
 }
 
 bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noexcept {
   constexpr double kRounding = 1e-9;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (axes_[a] && !(abs(place[a]) <= reach_ * (1.0 + kRounding))) {
+    if (axes_[a] && !(abs(place[a] - middle_[a]) <= reach_[a] * (1.0 + kRounding))) {
       return false;
     }
   }
   return true;
+}
+
+double EnergyBranches::share_of_draws(std::size_t axis, double middle, double half) const noexcept {
+  if (!is_normal_) {
+    return half;
+  }
+  constexpr double kInverseRootOfHalfTurn = 0.79788456080286536;  // 2 over the root of 2 pi.
+  const double place = reach_[axis] * std::max(abs(middle) - half, 0.0);
+  const double share = kInverseRootOfHalfTurn * (reach_[axis] * half) * exp(-0.5 * place * place);
+  return std::min(share, 1.0);
 }
 
 std::size_t EnergyBranches::legs_between(const Accelerometer& from,
@@ -235,8 +324,14 @@ void EnergyBranches::start_refinement(const DeviceDraws& draws, std::size_t bran
                                       const Accelerometer& device,
                                       GridWorkspace& workspace) noexcept {
   pool_.load(branch, search_.duration_s, workspace.refinement(), workspace.signal());
+  begin_legs(draws.device_at(place_at(pool_.home(branch))), device, workspace);
+}
+
+/// Refines the workspace's signal along the way from one device to another.
+void EnergyBranches::begin_legs(const Accelerometer& home, const Accelerometer& device,
+                                GridWorkspace& workspace) noexcept {
+  home_ = home;
   target_ = device;
-  home_ = draws.device_at(place_at(pool_.home(branch)));
   legs_ = legs_between(home_, device);
   leg_ = 0;
   begin_leg(workspace);
@@ -340,7 +435,7 @@ void EnergyBranches::step_missing(const DeviceDraws& draws, GridWorkspace& works
 void EnergyBranches::end_places() noexcept {
   pool_.drop_low();
   origin_ = pool_.best_at(0);
-  if (reach_ < kLeastReach) {
+  if (is_whole() && reach_[0] < kLeastReach) {
     phase_ = Phase::kReady;
     return;
   }
@@ -356,6 +451,10 @@ void EnergyBranches::begin_fit(std::size_t degree) noexcept {
   for (Fit& fit : fits_) {
     fit = Fit();
     fit.nearest = std::numeric_limits<double>::infinity();
+    fit.nearest_other = fit.nearest;
+  }
+  for (std::uint32_t& sets : best_sets_) {
+    sets = 0;
   }
   point_ = 0;
   branch_ = 0;
@@ -363,7 +462,7 @@ void EnergyBranches::begin_fit(std::size_t degree) noexcept {
 }
 
 void EnergyBranches::step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept {
-  const CubeNodes nodes(degree_, axes_);
+  const CubeNodes nodes = this->nodes();
   if (!refine_at(draws, from_point(nodes.point(point_)), workspace)) {
     return;
   }
@@ -408,7 +507,7 @@ void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& worksp
   do {
     ++point_;
   } while (point_ < kCorners && !is_corner(point_));
-  if (point_ == kChecks) {
+  if (point_ == checks()) {
     end_checks();
   }
 }
@@ -416,19 +515,55 @@ void EnergyBranches::step_checks(const DeviceDraws& draws, GridWorkspace& worksp
 /// How far each branch is below the best at a point where all have been refined.
 void EnergyBranches::compare_branches() noexcept {
   const double best = *std::max_element(energies_, energies_ + pool_.count());
+  std::uint32_t set = 0;
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    fits_[b].nearest = std::min(fits_[b].nearest, (best - energies_[b]) / abs(best));
+    const double below = (best - energies_[b]) / abs(best);
+    fits_[b].nearest = std::min(fits_[b].nearest, below);
+    if (below <= kSame) {
+      set |= 1U << b;
+    } else {
+      fits_[b].nearest_other = std::min(fits_[b].nearest_other, below);
+    }
   }
+  best_sets_[set / 32] |= std::uint32_t{1} << (set % 32);
+}
+
+/// Branches, a bit each, of which one is the best at all points: those that are it alone, and of
+/// several that have become the same signal the one whose polynomial is the best.
+std::uint32_t EnergyBranches::needed() const noexcept {
+  std::uint32_t needed = 0;
+  for (const bool alone : {true, false}) {
+    for (std::uint32_t set = 1; set < (1U << pool_.count()); ++set) {
+      const bool is_alone = (set & (set - 1)) == 0;
+      const bool occurs = (best_sets_[set / 32] >> (set % 32) & 1U) != 0;
+      if (!occurs || is_alone != alone || (set & needed) != 0) {
+        continue;
+      }
+      std::size_t best = static_cast<std::size_t>(__builtin_ctz(set));
+      for (std::size_t b = best + 1; b < pool_.count(); ++b) {
+        best = (set >> b & 1U) != 0 && fits_[b].error < fits_[best].error ? b : best;
+      }
+      needed |= 1U << best;
+    }
+  }
+  return needed;
+}
+
+/// The standard deviation of a branch's energy over the draws, nearly.
+double EnergyBranches::deviation_of(std::size_t branch) const noexcept {
+  // A unit of a place has the variance 1, or that of a uniform number within +-1.
+  const double unit = is_normal_ ? 1.0 : kInverseRoot3;
+  const CubePoint slopes = cube_slopes(degree_, coefficients(branch));
+  double variance = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double slope = slopes[a] * (unit * inverse_reach_[a]);
+    variance += slope * slope;
+  }
+  return sqrt(variance);
 }
 
 double EnergyBranches::accepted_error(std::size_t branch, double part) const noexcept {
-  // A unit of a place has the variance 1, or that of a uniform number within +-1.
-  const double unit = is_normal_ ? inverse_reach_ : kInverseRoot3;
-  double variance = 0.0;
-  for (const double slope : cube_slopes(degree_, coefficients(branch))) {
-    variance += slope * unit * (slope * unit);
-  }
-  return std::max(kAcceptedError * abs(origin_), part * sqrt(variance));
+  return std::max(kAcceptedError * abs(origin_), part * deviation_of(branch));
 }
 
 void EnergyBranches::end_checks() noexcept {
@@ -438,6 +573,7 @@ void EnergyBranches::end_checks() noexcept {
     begin_fit(degree_ + 1);
     return;
   }
+  is_accurate_ = is_predicted();
   accept(kAcceptedAtLast);
   phase_ = Phase::kReady;
 }
@@ -454,22 +590,36 @@ void EnergyBranches::accept(double part) noexcept {
 }
 
 bool EnergyBranches::can_raise_degree() const noexcept {
-  if (degree_ == kMaxCubeDegree || pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
+  if (is_piece_ || degree_ == kMaxCubeDegree ||
+      pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
     return false;
   }
+  bool has_hope = false;
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    if (fits_[b].has_failed &&
-        fits_[b].error <= kMostHope * accepted_error(b, kAcceptedDeviation)) {
-      return true;
+    if (fits_[b].has_failed) {
+      const bool hope = fits_[b].error <= kMostHope * accepted_error(b, kAcceptedDeviation);
+      if (has_pieces_ && !hope) {
+        return false;
+      }
+      has_hope = has_hope || hope;
     }
   }
-  return false;
+  return has_hope;
+}
+
+/// In a piece of a box three nodes are enough along the sensitivity: a signal's energy is a
+/// quadratic function of it, and the signal changes little.
+CubeNodes EnergyBranches::nodes() const noexcept {
+  return CubeNodes(degree_, axes_, is_piece_ && !is_normal_ ? 3 : degree_ + 1);
 }
 
 void EnergyBranches::drop_low() noexcept {
   const double room = kRoomBetweenNodes * pool_.variation() + kSame;
+  // In a piece a branch may end: from there on it is another one, and no loss.
+  const std::uint32_t kept = is_piece_ ? needed() : ~std::uint32_t{0};
   for (std::size_t b = pool_.count(); b-- > 0;) {
-    if (fits_[b].nearest > room) {
+    const bool is_needed = (kept >> b & 1U) != 0;
+    if ((is_needed ? fits_[b].nearest : fits_[b].nearest_other) > room) {
       remove(b);
     }
   }

@@ -13,6 +13,11 @@ namespace {
 constexpr std::size_t kWorkOfDraws = 2;
 constexpr std::size_t kWorkOfPolynomial = 2;
 constexpr std::size_t kWorkOfRefinement = 32;
+/// Of a piece: damping against f0, in parts of their ranges.
+constexpr double kNarrow = 8.0;
+/// The share of the draws in a piece. To cut it costs some 500 refinements, as much as a part of
+/// 2e5 trials in it would.
+constexpr double kWorthCutting = 1.0 / 256.0;
 
 /// Whether two values are the same but for rounding of a place and back.
 bool is_same(double a, double b) noexcept {
@@ -25,6 +30,15 @@ bool is_same(const Accelerometer& a, const Accelerometer& b, bool without_sensit
          is_same(a.natural_frequency_hz, b.natural_frequency_hz) && is_same(a.damping, b.damping);
 }
 
+/// Leaves S no uncertainty.
+void hold_sensitivity(DrawSettings& settings) noexcept {
+  settings.box.sensitivity = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    settings.covariance[0][i] = 0.0;
+    settings.covariance[i][0] = 0.0;
+  }
+}
+
 }  // namespace
 
 Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& best,
@@ -35,7 +49,11 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   if (settings.search.method == Method::kPaper && best.cells > GridWorkspace::kMaxTrialCells) {
     return Status::kTooManyCells;
   }
-  const Status status = draws_.start(at_estimate.device(), settings);
+  DrawSettings drawn = settings;
+  if (settings.holds_sensitivity) {
+    hold_sensitivity(drawn);
+  }
+  const Status status = draws_.start(at_estimate.device(), drawn);
   if (status != Status::kOk) {
     return status;
   }
@@ -45,13 +63,169 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   cells_ = best.cells;
   is_exhausted_ = false;
   branches_.start(at_estimate, best, draws_, search_, gain_follows_);
+  pieces_ = settings.pieces.size() >= kFirstPieces ? settings.pieces : Span<TrialPiece>();
+  if (!pieces_.empty()) {
+    branches_.expect_pieces();
+  }
+  pieces_used_ = 0;
+  pieces_begun_ = 0;
+  pieces_ready_ = 0;
+  piece_ = 0;
   return Status::kOk;
 }
 
 void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexcept {
-  if (!ready()) {
-    branches_.prepare(draws_, search, workspace);
+  if (ready()) {
+    return;
   }
+  if (!branches_.is_ready()) {
+    branches_.prepare(draws_, search, workspace);
+    return;
+  }
+  if (branches_.is_predicted() || branches_.notes().degree == 0) {
+    pieces_ = Span<TrialPiece>();
+    return;
+  }
+  if (pieces_used_ == 0) {
+    begin_pieces();
+  }
+  prepare_piece(workspace);
+}
+
+/// Parts of equal size along f0.
+void EnergyTrials::begin_pieces() noexcept {
+  constexpr double kHalf = 1.0 / static_cast<double>(kFirstPieces);
+  for (std::size_t i = 0; i < kFirstPieces; ++i) {
+    TrialPiece& piece = pieces_[i];
+    piece.child = 0;
+    piece.middle = {0.0, kHalf * static_cast<double>(2 * i + 1) - 1.0, 0.0};
+    piece.half = {1.0, kHalf, 1.0};
+    piece.parent = 0;
+    piece.branches.start_piece(branches_, piece.middle, piece.half);
+  }
+  pieces_used_ = kFirstPieces;
+  pieces_begun_ = kFirstPieces;
+}
+
+void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
+  TrialPiece& piece = pieces_[pieces_ready_];
+  if (!piece.branches.is_ready()) {
+    const EnergyBranches& seeds =
+        piece.parent == 0 ? branches_ : pieces_[piece.parent - 1].branches;
+    piece.branches.prepare_piece(seeds, draws_, workspace);
+    return;
+  }
+  if (is_worth_cutting(piece)) {
+    cut(piece);
+  }
+  ++pieces_ready_;
+}
+
+bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
+  if (piece.branches.is_accurate() || pieces_used_ + 2 > pieces_.size()) {
+    return false;
+  }
+  double share = 1.0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    share *=
+        branches_.axes()[a] ? branches_.share_of_draws(a, piece.middle[a], piece.half[a]) : 1.0;
+  }
+  return share > kWorthCutting;
+}
+
+/// Across f0, by which signals change most, unless it is narrow already.
+void EnergyTrials::cut(TrialPiece& piece) noexcept {
+  const bool is_narrow = kNarrow * piece.half[1] < piece.half[2];
+  piece.axis = is_narrow && branches_.axes()[2] ? 2 : 1;
+  piece.child = pieces_used_;
+  for (const double side : {-0.5, 0.5}) {
+    TrialPiece& child = pieces_[pieces_used_++];
+    CubePoint middle = {};
+    CubePoint half = {1.0, 1.0, 1.0};
+    middle[piece.axis] = side;
+    half[piece.axis] = 0.5;
+    child.child = 0;
+    child.parent = pieces_ready_ + 1;
+    child.middle = piece.middle;
+    child.middle[piece.axis] += side * piece.half[piece.axis];
+    child.half = piece.half;
+    child.half[piece.axis] *= 0.5;
+    child.branches.start_piece(piece.branches, middle, half);
+  }
+}
+
+double EnergyTrials::progress() const noexcept {
+  if (is_paper()) {
+    return 1.0;
+  }
+  // Whether there will be pieces is known once the whole is ready.
+  constexpr double kWhole = 0.5;
+  const double whole = branches_.progress();
+  if (pieces_.empty() || ready()) {
+    return whole;
+  }
+  // How many are cut is not known either: there is room for no more.
+  return kWhole *
+         (whole + static_cast<double>(pieces_ready_) / static_cast<double>(pieces_.size()));
+}
+
+bool EnergyTrials::predicts() const noexcept {
+  if (is_paper()) {
+    return false;
+  }
+  bool all = pieces_used_ != 0;
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    all = all && (piece.child != 0 || piece.branches.is_predicted());
+  }
+  return all || branches_.is_predicted();
+}
+
+double EnergyTrials::tolerance() const noexcept {
+  double tolerance = pieces_used_ == 0 ? branches_.tolerance() : 0.0;
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    if (piece.child == 0 && piece.branches.tolerance() > tolerance) {
+      tolerance = piece.branches.tolerance();
+    }
+  }
+  return tolerance;
+}
+
+BranchNotes EnergyTrials::notes() const noexcept {
+  BranchNotes notes = branches_.notes();
+  for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
+    if (piece.child != 0) {
+      continue;
+    }
+    ++notes.pieces;
+    if (piece.branches.is_predicted()) {
+      ++notes.pieces_predicted;
+    }
+    notes.is_crowded = notes.is_crowded || piece.branches.notes().is_crowded;
+  }
+  return notes;
+}
+
+/// The polynomials that hold at a place: those of its piece, if there are pieces.
+EnergyBranches& EnergyTrials::branches_at(const DeviceDraws::Place& place) noexcept {
+  piece_ = 0;
+  if (!is_cut() || !branches_.is_within_reach(place)) {
+    return branches_;
+  }
+  const CubePoint point = branches_.to_point(place);
+  const double position = 0.5 * (point[1] + 1.0) * static_cast<double>(kFirstPieces);
+  std::size_t index = position > 0.0 ? static_cast<std::size_t>(position) : 0;
+  index = index < kFirstPieces ? index : kFirstPieces - 1;
+  for (std::size_t child = pieces_[index].child; child != 0; child = pieces_[index].child) {
+    const std::size_t axis = pieces_[index].axis;
+    index = child + (point[axis] < pieces_[index].middle[axis] ? 0 : 1);
+  }
+  piece_ = index + 1;
+  return pieces_[index].branches;
+}
+
+/// The branches that the trial asks.
+EnergyBranches& EnergyTrials::asked() noexcept {
+  return piece_ == 0 ? branches_ : pieces_[piece_ - 1].branches;
 }
 
 Accelerometer EnergyTrials::device(std::uint32_t trial) noexcept {
@@ -85,14 +259,15 @@ double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& works
   }
   const DeviceDraws::Place place = draws_.place_of(device);
   if (is_same(draws_.device_at(place), device, gain_follows_)) {
-    branches_.begin(place);
+    branches_at(place).begin(place);
   } else {
+    piece_ = 0;
     branches_.begin();
   }
-  done_ = branches_.done();
-  energy_ = branches_.energy();
+  done_ = asked().done();
+  energy_ = asked().energy();
   if (!done_) {
-    branches_.begin_refinement(draws_, device, workspace);
+    asked().begin_refinement(draws_, device, workspace);
   }
   return run(workspace);
 }
@@ -120,12 +295,13 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
     begin_fixed_point(draws_.device(), workspace);
     return;
   }
-  branches_.begin(draws_.place());
-  done_ = branches_.done();
-  energy_ = branches_.energy();
+  EnergyBranches& branches = branches_at(draws_.place());
+  branches.begin(draws_.place());
+  done_ = branches.done();
+  energy_ = branches.energy();
   if (!done_) {
-    branches_.begin_refinement(draws_, draws_.device(),
-                               workspace);  // Seldom, and only then needed.
+    // Seldom, and only then needed.
+    branches.begin_refinement(draws_, draws_.device(), workspace);
   }
 }
 
@@ -141,9 +317,10 @@ void EnergyTrials::begin_fixed_point(const Accelerometer& device,
 
 void EnergyTrials::step(GridWorkspace& workspace) noexcept {
   if (!is_paper()) {
-    branches_.step(draws_, workspace);
-    energy_ = branches_.energy();
-    done_ = branches_.done();
+    EnergyBranches& branches = asked();
+    branches.step(draws_, workspace);
+    energy_ = branches.energy();
+    done_ = branches.done();
     return;
   }
   PhiOperator phi;

@@ -78,6 +78,7 @@ class ScpiJob final {
                     options.report.bench.device.natural_frequency_hz,
                     options.report.bench.device.damping}},
         trials_(new (std::nothrow) double[kStoredTrials]),
+        pieces_(new (std::nothrow) TrialPiece[EnergyTrials::kManyPieces]),
         store_(options.store_path.empty() ? static_cast<StoreBytes&>(volatile_bytes_)
                                           : static_cast<StoreBytes&>(file_bytes_)) {}
   ScpiJob(const ScpiJob&) = delete;
@@ -98,6 +99,9 @@ class ScpiJob final {
     app::Instrument& instrument = memory.make(ports, board);
     if (trials_ != nullptr) {
       instrument.lend_trial_store(Span<double>(trials_.get(), kStoredTrials));
+    }
+    if (pieces_ != nullptr) {
+      instrument.lend_trial_pieces(Span<TrialPiece>(pieces_.get(), EnergyTrials::kManyPieces));
     }
     instrument.start();
     while (!desk::stop_requested()) {
@@ -146,6 +150,7 @@ class ScpiJob final {
   app::SweepSettings sweep_;
   app::SimulatedBench simulated_;
   std::unique_ptr<double[]> trials_;
+  std::unique_ptr<TrialPiece[]> pieces_;
   VolatileBytes volatile_bytes_;
   FileBytes file_bytes_;
   FileStore store_;

@@ -57,28 +57,6 @@ std::size_t characters_in(const std::string& name) {
   return count;
 }
 
-std::string shortened(const std::string& name, std::size_t most) {
-  constexpr std::string_view kDots = "...";
-  const std::size_t count = characters_in(name);
-  if (count <= most) {
-    return name;
-  }
-  const std::size_t tail = (most - kDots.size()) / 2;
-  const std::size_t head = most - kDots.size() - tail;
-  std::string both;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t length = app::first_character(&name[at]).length;
-    if (i < head || i >= count - tail) {
-      both += name.substr(at, length);
-    } else if (i == head) {
-      both += kDots;
-    }
-    at += length;
-  }
-  return both;
-}
-
 int finish(const Problem& problem) {
   if (!problem.line.empty()) {
     const std::string line = "emax: " + problem.line + "\n";

@@ -46,11 +46,6 @@ std::string printable(std::string_view text);
 /// @returns How many columns it takes in a table.
 std::size_t characters_in(const std::string& name);
 
-/// @param[in] name The same.
-/// @returns The name in at most `most` characters, 3 or more. "..." stands for what has been in the
-/// middle, since a serial number comes last.
-std::string shortened(const std::string& name, std::size_t most);
-
 /// Says why the program ends, in one line on standard error, and returns the exit status for it.
 int finish(const Problem& problem);
 

@@ -9,8 +9,12 @@
 #include "desk/cli/option_parser.hpp"
 #include "desk/cli/value_text.hpp"
 #include "desk/compare/comparison.hpp"
+#include "desk/compare/comparison_csv.hpp"
+#include "desk/compare/comparison_json.hpp"
+#include "desk/compare/comparison_page.hpp"
 #include "desk/compare/comparison_picture.hpp"
 #include "desk/compare/comparison_report.hpp"
+#include "desk/compare/figure_text.hpp"
 #include "desk/files/output_files.hpp"
 
 namespace emax::desk {
@@ -22,6 +26,7 @@ constexpr std::size_t kMaxFiles = 1000;
 struct CompareOptions {
   std::vector<std::string> paths;
   std::string out_directory;  // Empty for no files.
+  FigureKind by = FigureKind::kMatched;
   bool json = false;
   bool csv = false;
 };
@@ -36,15 +41,33 @@ Problem take_path(std::string_view argument, std::vector<std::string>& paths) {
   return paths.size() <= kMaxFiles ? Problem{} : bad_input("compare: more than 1000 files");
 }
 
+bool take_by(std::string_view text, FigureKind& by) {
+  for (const FigureKind kind : {FigureKind::kMatched, FigureKind::kBand, FigureKind::kEnergy}) {
+    if (text == figure_words(kind).option) {
+      by = kind;
+      return true;
+    }
+  }
+  return false;
+}
+
 Syntax syntax_of(CompareOptions& options) {
   Syntax syntax;
   syntax.options = {
+      {"by", "Options", "FIGURE", "matched", "matched, band or energy",
+       "what ranks: matched, the in-band error in percent of\n"
+       "S a with the sensor's constant delay taken out (band\n"
+       "for all where one device has no such figure); band,\n"
+       "the same with the delay; energy, the E of the paper",
+       [&options](std::string_view text) { return take_by(text, options.by); }},
       {"csv", "Options", "", "", "", "prints the table as CSV",
        [&options](std::string_view) { return options.csv = true; }},
       {"json", "Options", "", "", "", "prints everything as JSON",
        [&options](std::string_view) { return options.json = true; }},
       {"out", "Options", "DIR", "", "a directory",
-       "writes comparison.txt, .csv and .json, and a picture",
+       "writes comparison.html (one page, also to print), the\n"
+       "same as .txt, .csv and .json, and the picture (SVG) by\n"
+       "gnuplot and its script; DIR is made if missing",
        [&options](std::string_view text) { return take_text(text, options.out_directory); }}};
   syntax.unknown = "no option of emax compare";
   syntax.take_file = [&options](std::string_view path) { return take_path(path, options.paths); };
@@ -86,6 +109,12 @@ Problem write_files(const Comparison& comparison, OutputFiles& files, Problem& r
   if (Problem problem = files.draw(kComparisonScript, kPictures, remark)) {
     return problem;
   }
+  const std::string svg = remark.line.empty() ? files.content_of(kComparisonPicture) : "";
+  if (Problem problem = files.add("comparison.html", [&](app::TextWriter& out) {
+        write_comparison_page(comparison, svg, out);
+      })) {
+    return problem;
+  }
   return files.commit();
 }
 
@@ -124,7 +153,7 @@ Problem run_compare(Span<const std::string_view> arguments) {
   }
   Comparison comparison;
   Problem remark;
-  if (Problem problem = compare_all(std::move(results), comparison)) {
+  if (Problem problem = compare_all(std::move(results), options.by, comparison)) {
     return problem;
   }
   if (!options.out_directory.empty()) {
@@ -142,10 +171,12 @@ std::string help_on_compare() {
   CompareOptions options;
   return R"(usage: emax compare A.json B.json ... [options]
 
-Ranks devices by their maximum energy: the results.json of emax report, all with
-the same filter, a, T and criterion. Since a is the number of S by default, give
-one --limit to all reports. Two devices share ranks where the uncertainties of
-their energies do not tell them apart.
+Ranks devices by how wrong they can get, from the results.json of emax report,
+all with the same filter, T and criterion. S and a may differ, but for --by
+energy: since a is the number of S by default, give one --limit to all reports
+then. Two devices share ranks where the uncertainties do not tell them apart. A
+device whose fit warns, or of a simulated bench, is marked and told apart from
+no other.
 )" + help_on(syntax_of(options).options);
 }
 

@@ -18,7 +18,7 @@ Problem run_compare(Span<const std::string_view> arguments);
 std::string help_on_compare();
 
 inline constexpr Command kCompareCommand = {"compare",
-                                            R"(  compare    ranks devices by their results
+                                            R"(  compare    ranks devices by how wrong they can get
 )",
                                             run_compare,
                                             help_on_compare,
@@ -28,7 +28,7 @@ inline constexpr Command kCompareCommand = {"compare",
 )",
                                             R"(  emax compare a/results.json b/results.json
   emax compare a/results.json b/results.json c/results.json --out comparison
-  emax compare a/results.json b/results.json --csv
+  emax compare a/results.json b/results.json --by energy --csv
 )"};
 
 }  // namespace emax::desk

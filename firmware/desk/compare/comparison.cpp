@@ -23,9 +23,13 @@ struct NumberCondition {
 constexpr NumberCondition kNumbers[] = {
     {&Result::order, "filter order", "", "--order"},
     {&Result::cutoff_hz, "cut-off", " Hz", "--cutoff"},
-    {&Result::limit_mps2, "a", " m/s^2", "--limit"},
     {&Result::duration_s, "T", " s", "--time"},
 };
+
+constexpr NumberCondition kLimit = {&Result::limit_mps2, "a", " m/s^2", "--limit"};
+
+constexpr NumberCondition kGain = {&Result::gain, "gain", " V/(m/s^2)", "--gain"};
+constexpr NumberCondition kProbability = {&Result::probability, "probability", "", "--probability"};
 
 struct WordCondition {
   std::string Result::*member;
@@ -53,80 +57,79 @@ Problem differ(const Result& result, const Result& first, const char* name,
                    " for all");
 }
 
-// Where there is no Monte Carlo run, there is no distribution or probability to differ.
-Problem check_trials(const Result& result, const Result& first) {
-  if (!result.has_uncertainty || !first.has_uncertainty) {
-    return {};
-  }
-  if (result.distribution != first.distribution) {
-    return differ(result, first, "distribution", result.distribution, first.distribution,
-                  "--distribution");
-  }
-  return result.probability == first.probability
-             ? Problem{}
-             : differ(result, first, "probability", in_digits(result.probability),
-                      in_digits(first.probability), "--probability");
+Problem check(const NumberCondition& number, const Result& result, const Result& first) {
+  const double value = result.*number.member;
+  const double first_value = first.*number.member;
+  return value == first_value ? Problem{}
+                              : differ(result, first, number.name, in_digits(value) + number.unit,
+                                       in_digits(first_value) + number.unit, number.option);
 }
 
-Problem check_conditions(const Result& result, const Result& first) {
+Problem check_conditions(const Result& result, const Result& first, FigureKind by) {
   for (const WordCondition& word : kWords) {
     if (result.*word.member != first.*word.member) {
       return differ(result, first, word.name, result.*word.member, first.*word.member, word.option);
     }
   }
   for (const NumberCondition& number : kNumbers) {
-    if (result.*number.member != first.*number.member) {
-      return differ(result, first, number.name, in_digits(result.*number.member) + number.unit,
-                    in_digits(first.*number.member) + number.unit, number.option);
+    if (Problem problem = check(number, result, first)) {
+      return problem;
     }
   }
-  if (result.gain_mode == "fixed" && result.gain != first.gain) {
-    return differ(result, first, "gain", in_digits(result.gain) + " V/(m/s^2)",
-                  in_digits(first.gain) + " V/(m/s^2)", "--gain");
+  if (first.gain_mode == "fixed") {
+    if (Problem problem = check(kGain, result, first)) {
+      return problem;
+    }
+  }
+  return by == FigureKind::kEnergy ? check(kLimit, result, first) : Problem{};
+}
+
+// Without an interval there is no probability to differ.
+Problem check_probability(const Result& result, const std::vector<Result>& all, FigureKind by) {
+  const auto first = std::find_if(
+      all.begin(), all.end(), [by](const Result& other) { return other.figure(by).has_interval; });
+  return first != all.end() && result.figure(by).has_interval ? check(kProbability, result, *first)
+                                                              : Problem{};
+}
+
+Problem check_band(const Result& result) {
+  if (result.figure(FigureKind::kBand).exists) {
+    return {};
+  }
+  return bad_input(result.file + ": holds no in-band figures, as emax report wrote it before it " +
+                   "knew them; run emax report anew, or give --by energy");
+}
+
+bool all_have(const std::vector<Result>& results, FigureKind kind) noexcept {
+  return std::all_of(results.begin(), results.end(),
+                     [kind](const Result& result) { return result.figure(kind).exists; });
+}
+
+Problem check_all(const std::vector<Result>& results, FigureKind asked, FigureKind by) {
+  for (const Result& result : results) {
+    if (asked != FigureKind::kEnergy) {
+      if (Problem problem = check_band(result)) {
+        return problem;
+      }
+    }
+    if (Problem problem = check_conditions(result, results.front(), by)) {
+      return problem;
+    }
+    if (Problem problem = check_probability(result, results, by)) {
+      return problem;
+    }
   }
   return {};
 }
 
-}  // namespace
-
-const Result& first_with_trials(const std::vector<Result>& results) noexcept {
-  const auto found = std::find_if(results.begin(), results.end(),
-                                  [](const Result& result) { return result.has_uncertainty; });
-  return found != results.end() ? *found : results.front();
-}
-
-Pair compare(const Result& first, const Result& second) noexcept {
-  Pair pair;
-  pair.difference_v2s = second.energy_v2s - first.energy_v2s;
-  pair.has_uncertainty = first.has_uncertainty && second.has_uncertainty;
-  if (pair.has_uncertainty) {
-    const double u1 = first.u_energy_v2s;
-    const double u2 = second.u_energy_v2s;
-    pair.expanded_v2s = kCoverageFactor * sqrt(u1 * u1 + u2 * u2);
-    pair.told_apart = abs(pair.difference_v2s) > pair.expanded_v2s;
-  }
-  pair.proven = first.has_bound && first.bound_v2s < second.energy_v2s;
-  return pair;
-}
-
-Problem compare_all(std::vector<Result> results, Comparison& comparison) {
-  for (const Result& result : results) {
-    if (Problem problem = check_conditions(result, results.front())) {
-      return problem;
-    }
-    if (Problem problem = check_trials(result, first_with_trials(results))) {
-      return problem;
-    }
-  }
-  std::stable_sort(results.begin(), results.end(), [](const Result& one, const Result& other) {
-    return one.energy_v2s < other.energy_v2s;
-  });
+void rank_all(Comparison& comparison) {
+  const std::vector<Result>& results = comparison.results;
   const std::size_t count = results.size();
   comparison.ranks.assign(count, {1, count});
   comparison.pairs.clear();
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
-      const Pair pair = compare(results[i], results[j]);
+      const Pair pair = compare(results[i], results[j], comparison.by);
       if (pair.told_apart) {
         --comparison.ranks[i].worst;
         ++comparison.ranks[j].best;
@@ -136,7 +139,51 @@ Problem compare_all(std::vector<Result> results, Comparison& comparison) {
       }
     }
   }
+}
+
+}  // namespace
+
+bool is_marked(const Result& result) noexcept { return result.fit_warns || result.is_simulated; }
+
+double probability_of(const Comparison& comparison) noexcept {
+  for (const Result& result : comparison.results) {
+    if (comparison.figure(result).has_interval) {
+      return result.probability;
+    }
+  }
+  return 0.0;
+}
+
+Pair compare(const Result& first, const Result& second, FigureKind by) noexcept {
+  const Figure& one = first.figure(by);
+  const Figure& other = second.figure(by);
+  Pair pair;
+  pair.difference = other.value - one.value;
+  pair.epsilon = one.epsilon + other.epsilon;
+  pair.is_compared = !is_marked(first) && !is_marked(second);
+  pair.has_uncertainty = one.has_uncertainty && other.has_uncertainty;
+  if (pair.has_uncertainty) {
+    pair.expanded = kCoverageFactor * sqrt(one.u * one.u + other.u * other.u);
+    pair.told_apart = pair.is_compared && abs(pair.difference) > pair.expanded + pair.epsilon;
+  }
+  pair.proven =
+      pair.is_compared && one.has_bound && one.bound + one.epsilon < other.value - other.epsilon;
+  return pair;
+}
+
+Problem compare_all(std::vector<Result> results, FigureKind asked, Comparison& comparison) {
+  const bool needs_band = asked == FigureKind::kMatched && !all_have(results, FigureKind::kMatched);
+  const FigureKind by = needs_band ? FigureKind::kBand : asked;
+  if (Problem problem = check_all(results, asked, by)) {
+    return problem;
+  }
+  std::stable_sort(results.begin(), results.end(), [by](const Result& one, const Result& other) {
+    return one.figure(by).value < other.figure(by).value;
+  });
+  comparison.asked = asked;
+  comparison.by = by;
   comparison.results = std::move(results);
+  rank_all(comparison);
   return {};
 }
 

@@ -9,21 +9,23 @@
 
 namespace emax::desk {
 
-/// What two devices' energies say of one another.
+/// What the figures of two devices say of one another.
 struct Pair {
-  double difference_v2s = 0.0;  ///< The second one's energy minus the first one's.
-  /// Of the difference, with the coverage factor kCoverageFactor; 0 unless `has_uncertainty`. The
-  /// devices' uncertainties count as independent: what they share, such as the reference sensor,
-  /// would only make it smaller.
-  double expanded_v2s = 0.0;
+  double difference = 0.0;  ///< The second one's figure minus the first one's.
+  /// U of the difference; 0 unless `has_uncertainty`. The devices' uncertainties count as
+  /// independent: what they share, such as the reference sensor, would only make it smaller.
+  double expanded = 0.0;
+  /// How far the difference can be off beside that, by the way the figures are computed.
+  double epsilon = 0.0;
   bool has_uncertainty = false;  ///< Both devices have one.
-  bool told_apart = false;       ///< The difference is beyond its uncertainty.
-  /// Even the first one's upper bound is below the second one's energy: true at the estimates for
-  /// whatever signal.
+  /// Neither of the two is marked. Of others nothing is said: u is too small where the fit warns,
+  /// and a simulated bench says nothing of a device.
+  bool is_compared = false;
+  bool told_apart = false;  ///< Compared, and the difference is beyond its uncertainty.
+  /// Compared, and even the first one's upper bound is below the second one's figure: true at the
+  /// estimates for whatever signal.
   bool proven = false;
 };
-
-inline constexpr double kCoverageFactor = 2.0;
 
 /// A device's place: one more than the number of those that are better and can be told apart from
 /// it, up to the number of all less those that are worse and can be told apart.
@@ -33,22 +35,34 @@ struct Rank {
 };
 
 struct Comparison {
-  std::vector<Result> results;  ///< By ascending energy: the most accurate device first.
+  FigureKind asked = FigureKind::kMatched;  ///< What to rank by.
+  /// What they are ranked by: kBand in place of kMatched where a device has no matched figure.
+  FigureKind by = FigureKind::kMatched;
+  std::vector<Result> results;  ///< By ascending figure: the most accurate device first.
   std::vector<Rank> ranks;      ///< Of each.
   std::vector<Pair> pairs;      ///< Each with its successor; one fewer.
+
+  const Figure& figure(const Result& result) const noexcept { return result.figure(by); }
 };
 
-/// @returns The first that has an uncertainty, from a Monte Carlo run; the very first if none has.
-const Result& first_with_trials(const std::vector<Result>& results) noexcept;
+/// @returns Whether the fit of a device warns or its bench was simulated, so that nobody can say
+/// which of two devices is better.
+bool is_marked(const Result& result) noexcept;
 
-Pair compare(const Result& first, const Result& second) noexcept;
+/// @returns The probability of the intervals that `comparison` has; 0 if it has none.
+double probability_of(const Comparison& comparison) noexcept;
+
+Pair compare(const Result& first, const Result& second, FigureKind by) noexcept;
 
 /// Compares devices that were measured under the same conditions: filter order, cut-off and gain,
-/// a, T, criterion, method, distribution and probability.
+/// T, criterion, method, and the probability of the intervals; for kEnergy also a. The figures of
+/// the band are in percent of S a, which may differ.
 ///
-/// @param[in]  results    Two or more. Equal energies stay in their order.
+/// @param[in]  results    Two or more. Equal figures stay in their order.
+/// @param[in]  asked      What to rank by.
 /// @param[out] comparison Of no use if there is a problem.
-/// @returns The first difference between conditions, if there is one, with what to do.
-Problem compare_all(std::vector<Result> results, Comparison& comparison);
+/// @returns The first difference between conditions, or the first file without figures of the
+/// band where they are needed, with what to do.
+Problem compare_all(std::vector<Result> results, FigureKind asked, Comparison& comparison);
 
 }  // namespace emax::desk

@@ -21,6 +21,9 @@ class JsonValue final {
   bool is_string() const noexcept { return kind_ == Kind::kString; }
   /// 0 unless it is a number.
   double number() const noexcept { return number_; }
+  bool is_object() const noexcept { return kind_ == Kind::kObject; }
+  /// @returns Whether it is the value true.
+  bool is_true() const noexcept { return kind_ == Kind::kBoolean && number_ != 0.0; }
   /// Empty unless it is a string. UTF-8, with escapes resolved.
   const std::string& text() const noexcept { return text_; }
   /// The elements of an array; none otherwise.

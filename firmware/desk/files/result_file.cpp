@@ -1,11 +1,13 @@
 // What `emax compare` needs of a results.json.
 #include "desk/files/result_file.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <vector>
 
 #include "emax/app/base/version.hpp"
+#include "emax/app/report/report.hpp"
 #include "emax/base/elementary.hpp"
 
 #include "desk/cli/console.hpp"
@@ -20,52 +22,71 @@ namespace {
 constexpr std::size_t kMaxFileSize = std::size_t{4} << 20;
 constexpr const char* kExpectation = "expected a results.json of emax report";
 
-struct Interval {
-  double low = 0.0;
-  double high = 0.0;
+// An object of the file by its name there.
+struct Group {
+  const JsonValue& value;
+  const char* name;
 };
 
 // Takes members one by one and remembers the first that is not there.
 class Taker final {
  public:
-  explicit Taker(const JsonValue& root) : root_(root) {}
+  double number(const Group& group, const char* name) {
+    bool exists = false;
+    const double value = optional_number(group, name, exists);
+    if (!exists) {
+      miss(group, name, "number");
+    }
+    return value;
+  }
 
-  double number(const char* group, const char* name) {
-    const JsonValue& value = root_[group][name];
-    if (!value.is_number()) {
+  // Null, or no such member, is no number.
+  double optional_number(const Group& group, const char* name, bool& exists) {
+    const JsonValue& value = group.value[name];
+    exists = value.is_number();
+    if (!exists && value.kind() != JsonValue::Kind::kNull) {
       miss(group, name, "number");
     }
     return value.number();
   }
 
-  std::string text(const char* group, const char* name) {
-    const JsonValue& value = root_[group][name];
+  std::string text(const Group& group, const char* name) {
+    const JsonValue& value = group.value[name];
     if (!value.is_string()) {
       miss(group, name, "text");
     }
     return value.text();
   }
 
-  Interval interval(const char* group, const char* name) {
-    const std::vector<JsonValue>& ends = root_[group][name].elements();
-    if (ends.size() != 2 || !ends[0].is_number() || !ends[1].is_number()) {
+  void optional_interval(const Group& group, const char* name, Figure& figure) {
+    const JsonValue& value = group.value[name];
+    const std::vector<JsonValue>& ends = value.elements();
+    figure.has_interval = ends.size() == 2 && ends[0].is_number() && ends[1].is_number();
+    if (figure.has_interval) {
+      figure.low = ends[0].number();
+      figure.high = ends[1].number();
+    } else if (value.kind() != JsonValue::Kind::kNull) {
       miss(group, name, "interval");
-      return {};
     }
-    return {ends[0].number(), ends[1].number()};
+  }
+
+  void interval(const Group& group, const char* name, Figure& figure) {
+    optional_interval(group, name, figure);
+    if (!figure.has_interval) {
+      miss(group, name, "interval");
+    }
   }
 
   // "energy.E is no number", or empty.
   const std::string& missing() const noexcept { return missing_; }
 
  private:
-  void miss(const char* group, const char* name, const char* kind) {
+  void miss(const Group& group, const char* name, const char* kind) {
     if (missing_.empty()) {
-      missing_ = std::string(group) + "." + name + " is no " + kind;
+      missing_ = std::string(group.name) + "." + name + " is no " + kind;
     }
   }
 
-  const JsonValue& root_;
   std::string missing_;
 };
 
@@ -87,63 +108,155 @@ Problem check_version(const JsonValue& root, const std::string& file) {
   return {};
 }
 
-void take_trials(const JsonValue& trials, Taker& taker, Result& result) {
-  result.has_uncertainty = trials.kind() == JsonValue::Kind::kObject && trials["u"].is_number();
-  if (!result.has_uncertainty) {
-    return;
-  }
-  result.distribution = taker.text("monte_carlo", "distribution");
-  const bool is_box = result.distribution == "box";
-  result.u_energy_v2s = (is_box ? sqrt(3.0) : 1.0) * taker.number("monte_carlo", "u");
-  result.probability = taker.number("monte_carlo", "probability");
-  const Interval interval = taker.interval("monte_carlo", "interval");
-  result.low_v2s = interval.low;
-  result.high_v2s = interval.high;
+void take_conditions(const JsonValue& root, Taker& taker, Result& result) {
+  const Group filter = {root["filter"], "filter"};
+  const Group energy = {root["energy"], "energy"};
+  result.order = taker.number(filter, "order");
+  result.cutoff_hz = taker.number(filter, "cutoff");
+  result.gain_mode = taker.text(filter, "gain_mode");
+  result.gain = taker.number(filter, "gain");
+  result.limit_mps2 = taker.number(energy, "a");
+  result.duration_s = taker.number(energy, "T");
+  result.criterion = taker.text(energy, "criterion");
+  result.method = taker.text(energy, "method");
+  result.sensitivity = taker.number({root["model"], "model"}, "S");
 }
 
-}  // namespace
+void take_uncertainty(const Group& block, Taker& taker, Figure& energy, double& probability) {
+  energy.has_uncertainty = true;
+  energy.u = taker.number(block, "u");
+  energy.expanded = kCoverageFactor * energy.u;
+  probability = taker.number(block, "probability");
+  taker.interval(block, "interval", energy);
+}
 
-Problem read_result(const std::string& path, Result& result) {
-  result = {};
-  result.path = path;
-  result.file = name_of_input(path);
+// An interval over the box is not one of E: only u is taken from there.
+void take_box(const Group& trials, Taker& taker, Result& result) {
+  Figure& energy = result.figure(FigureKind::kEnergy);
+  energy.has_uncertainty = true;
+  energy.u = sqrt(3.0) * taker.number(trials, "u");
+  energy.expanded = kCoverageFactor * energy.u;
+  result.energy_u_is_of_box = true;
+}
+
+void take_energy(const JsonValue& root, Taker& taker, Result& result) {
+  Figure& energy = result.figure(FigureKind::kEnergy);
+  const Group block = {root["energy"], "energy"};
+  energy.exists = true;
+  energy.value = taker.number(block, "E");
+  energy.bound = taker.optional_number(block, "bound", energy.has_bound);
+  result.ideal_percent =
+      taker.optional_number({root["ideal"], "ideal"}, "rms_percent", result.has_ideal);
+  const Group uncertainty = {root["uncertainty"], "uncertainty"};
+  const Group trials = {root["monte_carlo"], "monte_carlo"};
+  if (uncertainty.value.is_object()) {
+    take_uncertainty(uncertainty, taker, energy, result.probability);
+  } else if (trials.value.is_object() && trials.value["u"].is_number()) {
+    if (taker.text(trials, "distribution") == "box") {
+      take_box(trials, taker, result);
+    } else {
+      take_uncertainty(trials, taker, energy, result.probability);
+    }
+  }
+}
+
+void take_figure(const Group& block, Taker& taker, Figure& figure) {
+  figure.exists = true;
+  figure.value = taker.number(block, "rms_percent");
+  figure.bound = taker.optional_number(block, "bound_percent", figure.has_bound);
+  figure.u = taker.optional_number(block, "u_percent", figure.has_uncertainty);
+  if (figure.has_uncertainty) {
+    figure.expanded = taker.number(block, "U_percent");
+    taker.optional_interval(block, "interval_percent", figure);
+  }
+}
+
+void take_band(const JsonValue& root, Taker& taker, Result& result) {
+  const Group band = {root["band"], "band"};
+  if (!band.value.is_object()) {
+    return;
+  }
+  take_figure(band, taker, result.figure(FigureKind::kBand));
+  const Group matched = {band.value["matched"], "band.matched"};
+  if (!matched.value.is_object()) {
+    result.matched_refused = band.value["matched_refused"].text();
+    return;
+  }
+  Figure& figure = result.figure(FigureKind::kMatched);
+  take_figure(matched, taker, figure);
+  figure.epsilon = taker.number(matched, "epsilon_percent");
+  result.delay_s = taker.number(matched, "delay_s");
+}
+
+bool has_warning(const JsonValue& warnings, std::string_view about) {
+  const std::vector<JsonValue>& all = warnings.elements();
+  return std::any_of(all.begin(), all.end(), [about](const JsonValue& warning) {
+    return warning["about"].text() == about;
+  });
+}
+
+// Files from before there were warnings say chi2.
+bool chi_square_is_high(const JsonValue& model) {
+  const double chi2 = model["chi2"].number();
+  const double dof = model["dof"].number();
+  constexpr double kMostDof = 1e6;
+  return dof >= 1.0 && dof <= kMostDof &&
+         chi2 / dof > app::reduced_chi_square_limit(static_cast<std::size_t>(dof));
+}
+
+void take_marks(const JsonValue& root, Result& result) {
+  const JsonValue& warnings = root["warnings"];
+  const bool has_warnings = warnings.kind() == JsonValue::Kind::kArray;
+  result.fit_warns =
+      has_warnings ? has_warning(warnings, "fit") : chi_square_is_high(root["model"]);
+  const bool is_said = root["simulated"].kind() == JsonValue::Kind::kBoolean;
+  result.is_simulated = is_said ? root["simulated"].is_true() : root["bench"]["truth"].is_object();
+}
+
+Problem parse_result(const std::string& path, const std::string& file, JsonValue& root) {
   std::string text;
   if (Problem problem = read_text_file(path, kMaxFileSize, kExpectation, text)) {
     return problem;
   }
-  JsonValue root;
   const JsonError error = parse_json(text, root);
   if (stop_requested()) {
     return stopped();
   }
   if (error.problem != nullptr) {
-    return bad_input(result.file + ":" + std::to_string(error.line) + ":" +
-                     std::to_string(error.column) + ": " + error.problem + "; " + kExpectation);
+    return bad_input(file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) +
+                     ": " + error.problem + "; " + kExpectation);
   }
-  if (Problem problem = check_version(root, result.file)) {
+  return check_version(root, file);
+}
+
+}  // namespace
+
+double Result::rms_v() const noexcept {
+  return sqrt(figure(FigureKind::kEnergy).value / duration_s);
+}
+
+double Result::rms_percent() const noexcept { return 100.0 * rms_v() / (sensitivity * limit_mps2); }
+
+Problem read_result(const std::string& path, Result& result) {
+  result = {};
+  result.path = path;
+  result.file = name_of_input(path);
+  JsonValue root;
+  if (Problem problem = parse_result(path, result.file, root)) {
     return problem;
   }
-  if (root["energy"].kind() != JsonValue::Kind::kObject || !root["energy"]["E"].is_number()) {
+  if (!root["energy"].is_object() || !root["energy"]["E"].is_number()) {
     return bad_input(result.file + ": holds no maximum energy, its measurement has failed; " +
                      kExpectation + " that ended well");
   }
   result.device = result.file;
   take_label(root["labels"]["device"], result.device);
   take_label(root["labels"]["serial"], result.serial);
-  Taker taker(root);
-  result.order = taker.number("filter", "order");
-  result.cutoff_hz = taker.number("filter", "cutoff");
-  result.gain_mode = taker.text("filter", "gain_mode");
-  result.gain = taker.number("filter", "gain");
-  result.limit_mps2 = taker.number("energy", "a");
-  result.duration_s = taker.number("energy", "T");
-  result.criterion = taker.text("energy", "criterion");
-  result.method = taker.text("energy", "method");
-  result.energy_v2s = taker.number("energy", "E");
-  result.sensitivity = taker.number("model", "S");
-  result.has_bound = root["energy"]["bound"].is_number();
-  result.bound_v2s = root["energy"]["bound"].number();
-  take_trials(root["monte_carlo"], taker, result);
+  Taker taker;
+  take_conditions(root, taker, result);
+  take_energy(root, taker, result);
+  take_band(root, taker, result);
+  take_marks(root, result);
   if (!taker.missing().empty()) {
     return bad_input(result.file + ": " + taker.missing() + "; " + kExpectation);
   }

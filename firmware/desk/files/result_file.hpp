@@ -1,13 +1,45 @@
 // What `emax compare` needs of a results.json.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "desk/cli/problem.hpp"
 
 namespace emax::desk {
 
-/// A device's maximum energy and the conditions that it was found under, all from one file.
+/// What devices can be ranked by.
+enum class FigureKind : std::uint8_t {
+  kMatched,  ///< Error within the filter's band, the sensor's constant delay taken out.
+  kBand,     ///< Error within the filter's band, with its delay.
+  kEnergy,   ///< The energy of the paper's criterion.
+};
+
+inline constexpr std::size_t kFigureKinds = 3;
+
+/// Of every expanded uncertainty.
+inline constexpr double kCoverageFactor = 2.0;
+
+/// One figure of a device: the two of the band as rms errors in percent of S a, the energy in V^2
+/// s.
+struct Figure {
+  bool exists = false;
+  double value = 0.0;  ///< At the estimates.
+  bool has_uncertainty = false;
+  double u = 0.0;         ///< Standard uncertainty.
+  double expanded = 0.0;  ///< U, with kCoverageFactor.
+  bool has_interval = false;
+  double low = 0.0;  ///< Of the coverage interval.
+  double high = 0.0;
+  bool has_bound = false;
+  double bound = 0.0;  ///< No signal has more.
+  /// How far the true figure can be from `value` by the way it is computed, beside U.
+  double epsilon = 0.0;
+};
+
+/// A device's figures and the conditions that they were found under, all from one file.
 struct Result {
   std::string path;
   std::string file;    ///< For people.
@@ -21,26 +53,37 @@ struct Result {
   double gain = 0.0;      ///< In V/(m/s^2).
   double limit_mps2 = 0.0;
   double duration_s = 0.0;
-  std::string criterion;
+  std::string criterion;  ///< Of the energy.
   std::string method;
-  std::string distribution;  ///< Of the trials; empty without trials.
 
-  double sensitivity = 0.0;   ///< In V/(m/s^2).
-  double energy_v2s = 0.0;    ///< At the estimates.
-  double u_energy_v2s = 0.0;  ///< Standard uncertainty; 0 with `has_uncertainty` false.
-  bool has_uncertainty = false;
-  double probability = 0.0;  ///< Of the interval.
-  double low_v2s = 0.0;
-  double high_v2s = 0.0;
-  bool has_bound = false;
-  double bound_v2s = 0.0;  ///< No signal has more energy.
+  double sensitivity = 0.0;  ///< In V/(m/s^2).
+  std::array<Figure, kFigureKinds> figures = {};
+  double delay_s = 0.0;             ///< That has been taken out of the matched figure.
+  std::string matched_refused;      ///< Why there is no matched figure; empty if not known.
+  bool has_ideal = false;           ///< The next is known.
+  double ideal_percent = 0.0;       ///< Root of E/T of an ideal sensor, in percent of S a.
+  double probability = 0.0;         ///< Of the intervals; 0 where there are none.
+  bool energy_u_is_of_box = false;  ///< u(E) follows from the trials over the box.
+  bool fit_warns = false;           ///< The points do not follow the fitted model.
+  bool is_simulated = false;        ///< The bench was.
+
+  const Figure& figure(FigureKind kind) const noexcept {
+    return figures[static_cast<std::size_t>(kind)];
+  }
+  Figure& figure(FigureKind kind) noexcept { return figures[static_cast<std::size_t>(kind)]; }
+  /// @returns Root of E/T in V; not a number for an energy difference below 0.
+  double rms_v() const noexcept;
+  /// @returns The same in percent of S a.
+  double rms_percent() const noexcept;
 };
 
 /// Reads a results.json of this version of the program, of at most 4 MiB.
 ///
-/// u(E) is that of the parameters' standard uncertainties: the scatter of the trials, times the
-/// root of 3 where they were drawn uniformly within estimate +- u (paper equation (21)), since such
-/// a range has a standard deviation of u/sqrt(3). E is smooth over so narrow a range.
+/// u(E) is that of the block "uncertainty". Where that is null, it is the scatter of the trials,
+/// times the root of 3 where they were drawn uniformly within estimate +- u (paper equation (21)):
+/// such a range has a standard deviation of u/sqrt(3), and E is smooth over so narrow a range.
+/// A file without the block "band" has no figures of the band; one without "warnings" has its fit
+/// judged as the report does.
 ///
 /// @param[out] result Of no use if there is a problem.
 Problem read_result(const std::string& path, Result& result);

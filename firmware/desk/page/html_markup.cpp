@@ -19,12 +19,15 @@ struct SectionName {
 constexpr SectionName kSections[] = {
     {ReportSection::kTitle, "title", ""},
     {ReportSection::kLabels, "labels", "Labels"},
+    {ReportSection::kFigures, "figures", "The figures"},
     {ReportSection::kInput, "input", "What was put in"},
     {ReportSection::kFault, "fault", "Fault"},
     {ReportSection::kMeasurement, "measurement", "Measurement"},
     {ReportSection::kFit, "fit", "Fit"},
     {ReportSection::kErrorSystem, "error-system", "Error system"},
     {ReportSection::kEnergy, "energy", "Maximum energy"},
+    {ReportSection::kInBand, "in-band", "In-band error"},
+    {ReportSection::kUncertainty, "uncertainty", "Uncertainty of E"},
     {ReportSection::kMonteCarlo, "monte-carlo", "Monte Carlo"},
     {ReportSection::kTrend, "trend", "Trend"},
 };
@@ -77,6 +80,12 @@ void append_quoted(std::string& html, const char* text) {
     }
     text += next.length;
   }
+}
+
+std::string quoted(const char* text) {
+  std::string html;
+  append_quoted(html, text);
+  return html;
 }
 
 void append_words(std::string& html, std::string_view words) {

@@ -14,6 +14,9 @@ namespace emax::desk {
 /// Adds text of others to HTML: markup is escaped, what is not printable replaced, line feeds kept.
 void append_quoted(std::string& html, const char* text);
 
+/// @returns The same as HTML of its own.
+std::string quoted(const char* text);
+
 /// Adds words of ours: "m/s^2" with a raised 2, "+-" as one sign.
 void append_words(std::string& html, std::string_view words);
 
@@ -28,6 +31,16 @@ class HtmlWords final : public app::TextSink {
  private:
   std::string& html_;
 };
+
+/// @returns As HTML what `write` writes with a TextWriter.
+template <typename Write>
+std::string words_of(const Write& write) {
+  std::string html;
+  HtmlWords sink(html);
+  app::TextWriter out(sink);
+  write(out);
+  return html;
+}
 
 /// What comes at the end of each section: its pictures.
 class SectionEnd {

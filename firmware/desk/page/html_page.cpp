@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emax/app/base/version.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/files/rounding.hpp"
 #include "desk/page/html_markup.hpp"
+#include "desk/page/page_frame.hpp"
+#include "desk/page/page_picture.hpp"
 
 namespace emax::desk {
 
@@ -21,133 +22,33 @@ using app::TextWriter;
 
 constexpr double kMilli = 1e3;
 constexpr double kPercent = 100.0;
+constexpr double kCoverageFactor = 2.0;
 
-// Nothing may be loaded, neither from outside nor by what a label might say.
-constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="data:,">
-)";
-
-constexpr const char* kStyle = R"(<style>
-:root { color-scheme: light dark; --text: #1a1a1a; --soft: #595959; --line: #c4c4c4; --paper: #ffffff;
-  --warn: #8a2b00; --warn-paper: #fff1e6; --note-paper: #f1f4f8; }
-@media (prefers-color-scheme: dark) {
-  :root { --text: #ececec; --soft: #b4b4b4; --line: #5a5a5a; --paper: #161616; --warn: #ffb080;
-    --warn-paper: #3a2413; --note-paper: #242a31; }
-}
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1.5rem; max-width: 62rem; background: var(--paper); color: var(--text);
-  font: 1rem/1.45 sans-serif; overflow-wrap: anywhere; }
-h1 { margin: 0 0 .2rem; font-size: 1.7rem; line-height: 1.2; }
-h2 { margin: 2.2rem 0 .5rem; padding-top: .6rem; border-top: 1px solid var(--line); font-size: 1.25rem; }
-p { margin: .6rem 0; }
-.about { color: var(--soft); }
-#title .about { white-space: pre-line; }
-.headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(14rem, 1fr)); gap: .8rem 1.5rem;
-  margin: 1rem 0; padding: 1rem; border: 2px solid var(--text); }
-.headline div { min-width: 0; }
-.headline dt { color: var(--soft); font-size: .9rem; }
-.headline dd { margin: 0; font-size: 1.1rem; }
-.headline .first { grid-column: 1 / -1; }
-.headline .first dd { font-size: 2rem; font-weight: bold; line-height: 1.2; }
-.warning, .note { padding: .6rem .8rem; border-left: .4rem solid var(--line); background: var(--note-paper); }
-.warning { border-color: var(--warn); background: var(--warn-paper); color: var(--warn); font-weight: bold; }
-table { border-collapse: collapse; }
-.rows { width: 100%; }
-.rows th { width: 14rem; padding: .15rem 1rem .15rem 0; font-weight: normal; color: var(--soft); }
-.rows th, .rows td { text-align: left; vertical-align: top; }
-.wide { overflow-x: auto; margin: .8rem 0; }
-.numbers { font-variant-numeric: tabular-nums; font-size: .88rem; overflow-wrap: normal; }
-.numbers th, .numbers td { padding: .12rem .7rem; text-align: right; white-space: nowrap; }
-.numbers thead tr:last-child th { border-bottom: 1px solid var(--text); }
-figure { margin: 1.2rem 0; }
-figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
-figcaption { margin-top: .4rem; color: var(--soft); font-size: .92rem; }
-a { color: inherit; }
-footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--line); color: var(--soft);
-  font-size: .9rem; }
-@page { size: A4; margin: 15mm; }
-@media print {
-  :root { --text: #000000; --soft: #404040; --line: #a0a0a0; --paper: #ffffff; --warn: #000000;
-    --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
-  html { font-size: 9.5pt; }
-  body { max-width: none; padding: 0; }
-  figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  figure svg { max-height: 85mm; }
-  #fit svg { max-height: 120mm; }
-  h1, h2, h2 + p, thead { break-after: avoid; }
-  figure, .wide, .numbers tr, .headline, .warning, .note { break-inside: avoid; }
-  .warning { border: 1.5pt solid #000000; }
-  .wide { overflow: visible; }
-  .numbers { font-size: 8pt; }
-  .numbers th, .numbers td { padding: .05rem .35rem; }
-}
-</style>
-</head>
-<body>
-)";
-
-template <typename Write>
-std::string words_of(const Write& write) {
-  std::string html;
-  HtmlWords sink(html);
-  TextWriter out(sink);
-  write(out);
-  return html;
+const char* name_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "Largest energy of the error";
+    case Criterion::kEnergyDifference:
+      return "Largest energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "Largest energy of the in-band error";
 }
 
-std::string quoted(const char* text) {
-  std::string html;
-  append_quoted(html, text);
-  return html;
+const char* name_in_line(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "integral-square error";
+    case Criterion::kEnergyDifference:
+      return "energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "in-band error";
 }
 
 // Pictures
-
-// gnuplot gives the same names to parts of every picture; in one page each needs its own.
-std::string with_own_names(const std::string& tag, const std::string& prefix) {
-  std::string result = tag;
-  for (const std::string start : {"id='", "id=\"", "href='#", "href=\"#", "url(#"}) {
-    for (std::size_t at = result.find(start); at != std::string::npos;
-         at = result.find(start, at + start.size())) {
-      result.insert(at + start.size(), prefix);
-    }
-  }
-  return result;
-}
-
-// What is from `start` to `end` is left out, if it is there.
-void remove_part(std::string& text, const std::string& start, const std::string& end) {
-  const std::size_t first = text.find(start);
-  const std::size_t last = text.find(end, first);
-  if (first != std::string::npos && last != std::string::npos) {
-    text.erase(first, last + end.size() - first);
-  }
-}
-
-void append_svg(std::string& html, const PagePicture& picture, std::size_t number) {
-  std::string svg = picture.svg.substr(std::min(picture.svg.find("<svg"), picture.svg.size()));
-  remove_part(svg, "<title>", "</title>");
-  remove_part(svg, "<desc>", "</desc>");
-  const std::string prefix = "p" + std::to_string(number) + "-";
-  bool is_first = true;
-  for (std::size_t at = 0; at < svg.size();) {
-    const std::size_t open = std::min(svg.find('<', at), svg.size());
-    const std::size_t close = std::min(svg.find('>', open), svg.size() - 1);
-    html.append(svg, at, open - at);
-    std::string tag = with_own_names(svg.substr(open, close + 1 - open), prefix);
-    if (is_first) {
-      tag.insert(4, " role=\"img\" aria-label=\"" + quoted(picture.picture.title.c_str()) + "\"");
-      is_first = false;
-    }
-    html += tag;
-    at = close + 1;
-  }
-}
 
 class Pictures final : public SectionEnd {
  public:
@@ -157,9 +58,7 @@ class Pictures final : public SectionEnd {
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       const Picture& picture = pictures_[i].picture;
       if (picture.section == section) {
-        html += "<figure>\n";
-        append_svg(html, pictures_[i], i + 1);
-        html += "<figcaption>" + quoted(picture.caption.c_str()) + "</figcaption>\n</figure>\n";
+        append_picture(html, pictures_[i].svg, {picture.title, picture.caption}, i + 1);
       }
     }
   }
@@ -203,9 +102,19 @@ class EnergyFormat {
   int decimals_;
 };
 
-void append_figure(std::string& html, const char* kind, const std::string& name,
-                   const std::string& value) {
-  html += std::string("<div") + kind + "><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
+// A percentage with its expanded uncertainty; four digits without one.
+std::string percentage(double percent, double expanded) {
+  const bool has_u = expanded > 0.0 && std::isfinite(expanded);
+  return words_of([&](TextWriter& out) {
+    if (!has_u) {
+      out.general(percent, 4).text(" %");
+      return;
+    }
+    constexpr int kMostDecimals = 12;
+    const int decimals =
+        std::clamp(1 - static_cast<int>(std::floor(std::log10(expanded))), 0, kMostDecimals);
+    out.fixed(percent, decimals).text(" % +- ").fixed(expanded, decimals).text(" %");
+  });
 }
 
 std::string range_of(const EvaluationResults& results) {
@@ -217,47 +126,74 @@ std::string range_of(const EvaluationResults& results) {
          format.unit();
 }
 
-void append_energies(std::string& html, const EvaluationResults& results) {
+double expanded(const app::EnergyUncertainty& known) {
+  return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
+}
+
+void append_in_band(std::string& html, const EvaluationResults& results) {
+  const auto percent = [&](const app::FigureResults& figure) {
+    return percentage(results.percent_of(figure.energy_v2s), expanded(figure.uncertainty)) +
+           " of S&nbsp;a";
+  };
+  const char* kind = " class=\"first\"";
+  if (results.matched.exists()) {
+    append_figure(html, kind, "Worst in-band error, constant delay taken out (U, k = 2)",
+                  percent(results.matched));
+    kind = "";
+  }
+  if (results.band.exists()) {
+    append_figure(html, kind, "Worst in-band error, with its delay", percent(results.band));
+  }
+}
+
+void append_papers_figure(std::string& html, const EvaluationResults& results) {
   const double energy = results.energy_v2s();
-  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-  const std::string largest = is_ise ? "Largest energy of the error" : "Largest energy difference";
+  if (energy < 0.0 || results.settings.criterion == Criterion::kInBandError) {
+    return;
+  }
+  std::string value =
+      percentage(results.percent_of(energy), expanded(results.uncertainty)) + " of S&nbsp;a";
+  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
+    value += "; an ideal sensor: " + percentage(results.percent_of(results.ideal.energy_v2s), 0.0);
+  }
+  append_figure(html, "", "The paper's figure, √(E/T)", value);
+}
+
+void append_uncertainty(std::string& html, const EvaluationResults& results) {
+  const app::EnergyUncertainty& known = results.uncertainty;
+  const double energy = results.energy_v2s();
+  const char* const name = name_of(results.settings.criterion);
+  const EnergyFormat format(energy, known.exists() ? known.u_v2s : 0.0);
+  append_figure(html, "", std::string(name) + " at the estimates, E",
+                format.number(energy) + format.unit());
+  if (results.is_damping_open()) {
+    append_figure(html, "", "Range of E, as the points leave the damping open", range_of(results));
+    return;
+  }
+  if (!known.exists()) {
+    append_figure(html, "", "Standard uncertainty u(E)",
+                  results.has_uncertainty() ? "none: the draws are no devices"
+                                            : "none: all uncertainties are zero");
+    return;
+  }
+  append_figure(html, "", "Standard uncertainty u(E)", format.number(known.u_v2s) + format.unit());
+  append_figure(html, "", "Expanded uncertainty U(E), k = 2",
+                format.number(kCoverageFactor * known.u_v2s) + format.unit());
+  const std::string percent =
+      words_of([&](TextWriter& out) { out.general(kPercent * results.settings.probability, 6); });
+  append_figure(html, "", percent + " % coverage interval of E",
+                format.number(known.symmetric.low) + " to " + format.number(known.symmetric.high) +
+                    format.unit());
+}
+
+void append_papers_maximum(std::string& html, const EvaluationResults& results) {
   if (!results.has_monte_carlo) {
-    const EnergyFormat format(energy, 0.0);
-    append_figure(html, " class=\"first\"", largest + ", E<sub>max</sub>",
-                  format.number(energy) + format.unit());
-    if (results.is_damping_open()) {
-      append_figure(html, "", "Range of E, as the points leave the damping open",
-                    range_of(results));
-      return;
-    }
-    append_figure(html, "", "Standard uncertainty u(E)", "none: all uncertainties are zero");
     return;
   }
   const MonteCarloResult& result = results.trials.result;
   const EnergyFormat format(result.maximum, result.u);
-  append_figure(html, " class=\"first\"",
-                largest + " within the device's uncertainty, E<sub>max</sub>",
+  append_figure(html, "", "The paper's E<sub>max</sub>, largest of its Monte Carlo trials",
                 format.number(result.maximum) + format.unit());
-  append_figure(html, "", "At the estimates, E", format.number(energy) + format.unit());
-  append_figure(html, "", "Standard uncertainty u(E)", format.number(result.u) + format.unit());
-  const std::string percent =
-      words_of([&](TextWriter& out) { out.general(kPercent * result.probability, 6); });
-  append_figure(html, "", percent + " % coverage interval of E",
-                format.number(result.symmetric.low) + " to " +
-                    format.number(result.symmetric.high) + format.unit());
-}
-
-void append_rms(std::string& html, const EvaluationResults& results) {
-  if (results.energy_v2s() < 0.0) {
-    return;
-  }
-  const double full = results.device.estimate.sensitivity * results.limit_mps2;
-  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-  const char* name = is_ise ? "rms error at the estimates" : "√(E/T) at the estimates";
-  append_figure(html, "", name, words_of([&](TextWriter& out) {
-                  out.general(results.rms_error_v(), 5).text(" V = ");
-                  out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S a");
-                }));
 }
 
 void append_bound(std::string& html, const EvaluationResults& results) {
@@ -282,8 +218,7 @@ void append_conditions(std::string& html, const EvaluationResults& results, bool
         out.text(" ms, against a Butterworth filter of order ");
         out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(" with a cutoff of ");
         out.general(settings.cutoff_hz, 7).text(" Hz; ");
-        const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
-        out.text(is_ise ? "integral-square error" : "energy difference");
+        out.text(name_in_line(settings.criterion));
         const bool is_paper = settings.method == Method::kPaper;
         out.text(is_paper ? ", by the paper's method: other signals may reach more." : ".");
       }) +
@@ -310,20 +245,14 @@ std::string name_of(const app::Labels& labels) {
 }
 
 std::string opening(const app::Labels& labels) {
-  const std::string name = name_of(labels);
-  return std::string(kHead) + "<title>" + name + " - emax report</title>\n" + kStyle +
-         "<main>\n<header>\n<h1>" + name + "</h1>\n<p class=\"about\">" +
-         "The largest error that this accelerometer can make</p>\n</header>\n";
+  return page_opening(name_of(labels), " - emax report",
+                      "The largest error that this accelerometer can make");
 }
 
 std::string closing() {
-  return std::string("</main>\n<footer>Made by emax ") + app::kVersion +
-         ". The same as text is in report.txt, the numbers for programs are in results.json, the " +
-         "tables of the pictures in the CSV files beside them.</footer>\n</body>\n</html>\n";
-}
-
-void write_html(TextWriter& out, const std::string& html) {
-  out.text(Span<const char>(html.data(), html.size()));
+  return page_closing(
+      "The same as text is in report.txt, the numbers for programs are in results.json, the "
+      "tables of the pictures in the CSV files beside them.");
 }
 
 }  // namespace
@@ -339,9 +268,11 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
   markup.finish();
 
   std::string html = opening(context.labels) + "<dl class=\"headline\">\n";
-  append_energies(html, results);
-  append_rms(html, results);
+  append_in_band(html, results);
+  append_papers_figure(html, results);
+  append_uncertainty(html, results);
   append_bound(html, results);
+  append_papers_maximum(html, results);
   html += "</dl>\n";
   append_conditions(html, results, context.in_g);
   append_warnings(html, markup);

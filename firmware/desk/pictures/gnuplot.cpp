@@ -198,11 +198,15 @@ GnuplotRun run_gnuplot(const std::string& directory, const char* script,
 
 std::string gnuplot_string(const std::string& text) {
   std::string quoted = "'";
+  bool is_quote = false;
   for (const char c : text) {
+    if ((c == '\'') != is_quote) {
+      is_quote = !is_quote;
+      quoted += is_quote ? "'.\"" : "\".'";
+    }
     quoted += c == '\n' ? ' ' : c;
-    quoted += c == '\'' ? "'" : "";
   }
-  return quoted + "'";
+  return quoted + (is_quote ? "\"" : "'");
 }
 
 }  // namespace emax::desk

@@ -29,8 +29,9 @@ inline constexpr std::chrono::milliseconds kDrawingTime{20'000};
 GnuplotRun run_gnuplot(const std::string& directory, const char* script,
                        std::chrono::milliseconds longest = kDrawingTime);
 
-/// @returns Text as a string of a script. Single quotes and no line feeds: nothing in it can end
-/// the string, and nothing is expanded.
+/// @returns Text as an expression of a script: strings in single quotes without line feeds, so that
+/// nothing in them can end them, and nothing is expanded. Single quotes stand in strings of their
+/// own, in double ones, since gnuplot 5.4 loses some of those that are doubled.
 std::string gnuplot_string(const std::string& text);
 
 }  // namespace emax::desk

@@ -10,6 +10,7 @@
 #include "emax/model/accelerometer.hpp"
 
 #include "desk/cli/console.hpp"
+#include "desk/pictures/axis_scale.hpp"
 #include "desk/pictures/gnuplot.hpp"
 
 namespace emax::desk {
@@ -57,9 +58,20 @@ std::string filter_of(const EvaluationResults& results) {
   });
 }
 
+const char* name_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "integral-square error";
+    case Criterion::kEnergyDifference:
+      return "energy difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "in-band error";
+}
+
 std::string conditions_of(const EvaluationResults& results, bool with_time, bool in_g) {
   const app::Settings& settings = results.settings;
-  const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   return words_of([&](TextWriter& out) {
     if (with_time) {
       out.text("T = ").general(kMilli * settings.duration_s, 6).text(" ms, ");
@@ -71,7 +83,7 @@ std::string conditions_of(const EvaluationResults& results, bool with_time, bool
     out.text(", filter of order ");
     out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(", ");
     out.general(settings.cutoff_hz, 6).text(" Hz, ");
-    out.text(is_ise ? "integral-square error" : "energy difference");
+    out.text(name_of(settings.criterion));
     out.text(settings.method == Method::kPaper ? ", paper's method" : "");
   });
 }
@@ -90,8 +102,8 @@ std::string energy_of(const EvaluationResults& results) {
     out.text("E = ").scientific(energy, 4).text(" V² s");
     if (energy >= 0.0) {
       const double full = results.device.estimate.sensitivity * results.limit_mps2;
-      const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-      out.text(is_ise ? ", rms error " : ", √(E/T) = ")
+      const bool is_error = results.settings.criterion != Criterion::kEnergyDifference;
+      out.text(is_error ? ", rms error " : ", √(E/T) = ")
           .general(results.rms_error_v(), 4)
           .text(" V = ");
       out.general(kPercent * results.rms_error_v() / full, 4).text(" % of S·a");
@@ -126,35 +138,6 @@ std::string title_lines(const std::string& first, const std::string& second,
 }
 
 // Axes
-
-// What numbers of an axis are multiplied by, and the unit that they have then.
-struct Scale {
-  double factor;
-  std::string unit;
-};
-
-int thousands_of(double largest) {
-  const double size = std::abs(largest);
-  return size > 0.0 ? static_cast<int>(std::floor(std::log10(size) / 3.0 + 1e-9)) : 0;
-}
-
-std::string superscript(int exponent) {
-  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = exponent < 0 ? "⁻" : "";
-  for (const char digit : std::to_string(std::abs(exponent))) {
-    text += kDigits[digit - '0'];
-  }
-  return text;
-}
-
-// Below 1000 and from `plain` on there is no power of ten.
-Scale scaled(double largest, const std::string& unit, double plain = 1.0) {
-  const int exponent = 3 * thousands_of(largest);
-  if (exponent == 0 || (exponent < 0 && std::abs(largest) >= plain)) {
-    return {1.0, unit};
-  }
-  return {std::pow(10.0, -exponent), "10" + superscript(exponent) + " " + unit};
-}
 
 // The same for units that have prefixes.
 Scale prefixed(double largest, const std::string& unit) {

@@ -122,6 +122,11 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
   if (store != nullptr) {
     sequencer.lend_trial_store(Span<double>(store.get(), room));
   }
+  const std::unique_ptr<TrialPiece[]> pieces(new (std::nothrow)
+                                                 TrialPiece[EnergyTrials::kManyPieces]);
+  if (pieces != nullptr) {
+    sequencer.lend_trial_pieces(Span<TrialPiece>(pieces.get(), EnergyTrials::kManyPieces));
+  }
   ConsoleProgress progress;
   Problem problem = start(options, job, imported);
   if (!problem) {

@@ -52,8 +52,9 @@ Status start(const TrialSettings& settings, const ModalModel& model) {
 }
 
 /// The largest energy that the whole search finds for a device, filter unchanged.
-double full_search(const Accelerometer& device, const TrialSettings& settings) {
-  ModalModel model = paper_model();
+double full_search(const ModalModel& estimate, const Accelerometer& device,
+                   const TrialSettings& settings) {
+  ModalModel model = estimate;
   EXPECT_EQ(model.set_device(device), Status::kOk);
   EnergySearch full;
   EXPECT_EQ(full.start(model, settings.search), Status::kOk);
@@ -93,7 +94,7 @@ TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
     ASSERT_EQ(start(settings, paper_model()), Status::kOk);
     for (std::uint32_t t = 0; t < 12; ++t) {
       const Accelerometer device = trials.device(t);
-      const double expected = full_search(device, settings);
+      const double expected = full_search(paper_model(), device, settings);
       EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
     }
   }
@@ -182,7 +183,7 @@ TEST(EnergyTrials, TakeTheLargestOfSeveralSignals) {
   EXPECT_GE(corner, 5.297355e-3);
   EXPECT_LT(corner, 5.2974e-3);
   for (std::uint32_t t = 0; t < 12; ++t) {
-    const double expected = full_search(trials.device(t), settings);
+    const double expected = full_search(paper_model(), trials.device(t), settings);
     // A trial may find more than a search; what it may be off by is its tolerance.
     EXPECT_GE(trials.energy(t, workspace), (1.0 - 2.0 * trials.tolerance()) * expected) << t;
   }
@@ -204,6 +205,61 @@ TEST(EnergyTrials, WhereAPolynomialFailsTheTrialIsARefinement) {
     const double expected = refine(model, signal, workspace.refinement()).energy;
     // At least what the estimate's signal is refined to, to rounding.
     EXPECT_GE(trials.energy(t, workspace), (1.0 - 1e-12) * expected) << t;
+  }
+}
+
+// Lightly damped: signals end and others begin within the ranges, so that no polynomial of degree 6
+// holds all over them.
+constexpr Sensor kHardSensors[] = {
+    {{1.0, 4073.0, 0.01},
+     {4, 1000.0, 1.0},
+     {0.003, 12.0, 1e-4},
+     10e-3,
+     Criterion::kIntegralSquareError},
+    {{1.0, 4073.0, 0.1},
+     {4, 1000.0, 1.0},
+     {0.003, 12.0, 1e-3},
+     10e-3,
+     Criterion::kIntegralSquareError},
+    {{1.0, 900.0, 0.05}, {1, 200.0, 1.0}, {0.01, 9.0, 5e-4}, 8e-3, Criterion::kEnergyDifference},
+};
+
+TEST(EnergyTrials, InPiecesOfTheRangesFindWhatAFullSearchOfThatDeviceFinds) {
+  std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
+  for (const Sensor& sensor : kHardSensors) {
+    for (const Distribution distribution : {Distribution::kBox, Distribution::kNormal}) {
+      if (distribution == Distribution::kNormal && sensor.device.damping != 0.1) {
+        continue;  // One is enough.
+      }
+      ModalModel model{};
+      ASSERT_EQ(model.set(sensor.device, sensor.filter, sensor.criterion), Status::kOk);
+      TrialSettings settings = settings_for(Method::kBest, sensor.duration_s);
+      settings.distribution = distribution;
+      settings.box = sensor.box;
+      settings.covariance[0][0] = sensor.box.sensitivity * sensor.box.sensitivity / 3.0;
+      settings.covariance[1][1] =
+          sensor.box.natural_frequency_hz * sensor.box.natural_frequency_hz / 3.0;
+      settings.covariance[2][2] = sensor.box.damping * sensor.box.damping / 3.0;
+      settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+      ASSERT_EQ(start(settings, model), Status::kOk);
+      EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
+      EXPECT_LE(trials.tolerance(), 1e-7);
+      // A few in a hundred are refined; all were before.
+      int refined = 0;
+      for (std::uint32_t t = 0; t < 400; ++t) {
+        trials.begin(t, workspace);
+        refined += trials.done() ? 0 : 1;
+        while (!trials.done()) {
+          trials.step(workspace);
+        }
+        if (t % 40 == 0) {
+          const double found = trials.energy();
+          const double expected = full_search(model, trials.device(t), settings);
+          EXPECT_NEAR(found, expected, 2.0 * trials.tolerance() * std::fabs(expected)) << t;
+        }
+      }
+      EXPECT_LT(refined, 40);
+    }
   }
 }
 
@@ -375,7 +431,7 @@ TEST(EnergyTrials, PaperMethodRunsTheWholeFixedPointInEachTrial) {
   EXPECT_NEAR(kPaperA2 * trials.energy_of(kPaperDevice, workspace), 0.00448654991209, 0.6e-14);
   for (std::uint32_t t = 0; t < 5; ++t) {
     const Accelerometer device = trials.device(t);
-    const double expected = full_search(device, settings);
+    const double expected = full_search(paper_model(), device, settings);
     EXPECT_NEAR(trials.energy(t, workspace), expected, 1e-12 * expected) << t;
   }
 }
@@ -407,6 +463,32 @@ TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivit
   EXPECT_NEAR(trials.energy_of(kPaperDevice, workspace), at_estimate, 1e-12 * at_estimate);
   // A filter that stays at 1.037 leaves a lasting error of 1.037 a.
   EXPECT_NE(trials.energy_of({2.074, 4073.0, 0.3182}, workspace), at_double);
+}
+
+TEST(EnergyTrials, WithAHeldSensitivityOnlyFrequencyAndDampingAreDrawn) {
+  for (const Distribution distribution : {Distribution::kBox, Distribution::kNormal}) {
+    TrialSettings settings = normal_settings(2e-3);  // S is correlated with the others.
+    settings.distribution = distribution;
+    settings.holds_sensitivity = true;
+    ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+    EXPECT_TRUE(trials.predicts());
+    const SwitchingSignal best_signal = best.signal;
+    double f0_squares = 0.0;
+    for (std::uint32_t t = 0; t < 1000; ++t) {
+      const Accelerometer device = trials.device(t);
+      ASSERT_EQ(device.sensitivity, kPaperDevice.sensitivity);
+      const double from_f0 = device.natural_frequency_hz - kPaperDevice.natural_frequency_hz;
+      f0_squares += from_f0 * from_f0;
+      ModalModel moved = paper_model();
+      ASSERT_EQ(moved.set_device(device), Status::kOk);
+      SwitchingSignal signal = best_signal;
+      const double expected = refine(moved, signal, workspace.refinement()).energy;
+      ASSERT_NEAR(trials.energy(t, workspace), expected, 2.0 * trials.tolerance() * expected) << t;
+    }
+    // The variance of f0 is as without holding S; that of 1000 draws is within 4 times 4.5 %.
+    const double variance = distribution == Distribution::kBox ? 36.0 / 3.0 : 36.0;
+    EXPECT_NEAR(f0_squares / 1000.0, variance, 0.18 * variance);
+  }
 }
 
 TEST(EnergyTrials, RefusesABoxThatLeavesWhatADeviceMayBe) {

@@ -12,6 +12,7 @@
 namespace {
 
 using emax::Criterion;
+using emax::DelayMode;
 using emax::Distribution;
 using emax::FrequencyResponse;
 using emax::Generator;
@@ -31,8 +32,8 @@ using emax::test::run_on;
 using emax::test::synthetic_points;
 using emax::test::text_of;
 
-constexpr Goal kGoals[] = {Goal::kModel, Goal::kEnergy, Goal::kMonteCarlo, Goal::kTrend,
-                           Goal::kReport};
+constexpr Goal kGoals[] = {Goal::kModel, Goal::kEnergy,      Goal::kMonteCarlo, Goal::kTrend,
+                           Goal::kBand,  Goal::kUncertainty, Goal::kReport};
 
 Settings with_trend() {
   Settings settings = quick_settings();
@@ -85,6 +86,8 @@ const Change kChanges[] = {
     {"unused_limit", [](Settings& s) { s.limit_mps2 = 2.0; }, false, false, false},
     {"criterion", [](Settings& s) { s.criterion = Criterion::kEnergyDifference; }, true, true,
      true},
+    {"reference_delay", [](Settings& s) { s.delay_mode = DelayMode::kNone; }, true, true, true},
+    {"unused_reference_delay", [](Settings& s) { s.delay_s = 1e-6; }, false, false, false},
     {"method", [](Settings& s) { s.method = Method::kPaper; }, true, true, true},
     {"unused_step", [](Settings& s) { s.step_s = 3e-6; }, false, false, false},
     {"unused_iterations", [](Settings& s) { s.iterations = 20; }, false, false, false},

@@ -247,13 +247,14 @@ TEST(Sequencer, EvaluatesAFitOfBeforeAsFarAsItIsKept) {
   EXPECT_EQ(rig->kept_identification()->dof, 81U);
   Settings settings = quick_settings();
   EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNone);
-  settings.distribution = Distribution::kNormal;  // Takes the covariance.
-  EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNoFit);
-  EXPECT_EQ(rig.evaluate(settings, Goal::kReport), Obstacle::kNoFit);
+  settings.distribution = Distribution::kNormal;  // Takes the covariance, which is kept.
+  EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNone);
+  EXPECT_EQ(rig.evaluate(settings, Goal::kUncertainty), Obstacle::kNone);
   EXPECT_EQ(rig.evaluate(settings, Goal::kTrend), Obstacle::kNoTimes);
   settings = quick_settings();
   settings.birge = true;  // Takes chi2 of the points.
   EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNoFit);
+  EXPECT_EQ(rig.evaluate(settings, Goal::kReport), Obstacle::kNoFit);
   fit.chi2 = 80.0;  // A fit so good has no ratio above 1.
   rig->take(fit);
   EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNone);

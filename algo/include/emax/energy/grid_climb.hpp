@@ -22,7 +22,8 @@ namespace emax {
 /// equal sign that gains most is turned, and the fixed point runs again, until no stretch gains.
 /// The product with Phi is kept up to date by the stretches that have turned; it is computed anew
 /// where they are many, and before the climb ends, so that it does not end by rounding. What gains
-/// less than 1e-6 of the energy is left to those who refine the end.
+/// less than 1e-6 of the energy is left to those who refine the end. Where modes cancel, rounding
+/// can promise gains without end: a climb that rests 8 times without having gained is done.
 class GridClimb {
  public:
   /// @param[in] shift As that of `FixedPoint`, divided by the scale of the FloatPhi.
@@ -77,6 +78,7 @@ class GridClimb {
   FloatPhi::End at_end_ = {};  // Of the stretches of this update
   Pulse best_ = {};
   double energy_ = 0.0;
+  double highest_ = 0.0;  // Of the energies at rest.
   float shift_ = 0.0F;
   std::size_t next_ = 0;  // The cell that comes next.
   std::size_t iterations_ = 0;
@@ -84,6 +86,7 @@ class GridClimb {
   std::size_t turns_ = 0;
   std::size_t updates_ = 0;  // Since the product was computed.
   std::size_t products_ = 0;
+  std::size_t fruitless_ = 0;  // Rests since the highest one.
   Phase phase_ = Phase::kDone;
   bool has_rested_ = false;
   bool at_rest_ = false;

@@ -24,7 +24,10 @@ using CubePoint = std::array<double, 3>;
 class CubeNodes {
  public:
   /// @param[in] degree Up to kMaxCubeDegree.
-  CubeNodes(std::size_t degree, const std::array<bool, 3>& axes) noexcept;
+  /// @param[in] first_axis_nodes The most nodes on the first axis, 1 to degree + 1: powers of its
+  ///   variable are below that number.
+  CubeNodes(std::size_t degree, const std::array<bool, 3>& axes,
+            std::size_t first_axis_nodes = kMaxCubeDegree + 1) noexcept;
 
   std::size_t size() const noexcept { return counts_[0] * counts_[1] * counts_[2]; }
   CubePoint point(std::size_t index) const noexcept;

@@ -23,7 +23,9 @@ struct BranchNotes {
   std::uint8_t predicted = 0;   ///< Of them with a polynomial that passed its check.
   std::uint8_t degree = 0;      ///< Of the polynomials; 0 if there are none.
   std::uint8_t unsearched = 0;  ///< Places where the search failed: too many cells or switches.
-  bool is_crowded = false;      ///< A signal that might matter found no room.
+  std::uint8_t pieces = 0;      ///< Parts of the ranges with branches of their own; 0 if not cut.
+  std::uint8_t pieces_predicted = 0;  ///< Of them, where all branches have polynomials.
+  bool is_crowded = false;            ///< A signal that might matter found no room.
 };
 
 /// The largest energy E*(S, f0, beta) of a figure within the ranges of its parameters.
@@ -59,6 +61,9 @@ class EnergyBranches {
   void start(const ModalModel& at_estimate, const MaximumEnergy& best, const DeviceDraws& draws,
              const SearchSettings& search, bool gain_follows) noexcept;
 
+  /// Says that pieces will follow where a polynomial fails, so that no degree is tried in vain.
+  void expect_pieces() noexcept { has_pieces_ = true; }
+
   /// Does a step of a search or of a refinement.
   ///
   /// @param[in] draws     The same in each call, as `workspace`.
@@ -66,6 +71,20 @@ class EnergyBranches {
   /// @param     workspace As for a search: what is in it is lost.
   void prepare(const DeviceDraws& draws, EnergySearch& search, GridWorkspace& workspace) noexcept;
   bool is_ready() const noexcept { return phase_ == Phase::kReady; }
+
+  /// Starts over with a part of the ranges: the signals are those of the whole, refined in the
+  /// middle of the part, where each that stays another one begins a branch of its own. No searches.
+  ///
+  /// Polynomials of degree 4 only: where they fail, smaller pieces do better.
+  ///
+  /// @param[in] whole  `is_ready()`, with polynomials; it may be a piece itself.
+  /// @param[in] middle Of the part, as a point of the whole's cube, and `half` its half-widths.
+  void start_piece(const EnergyBranches& whole, const CubePoint& middle,
+                   const CubePoint& half) noexcept;
+  /// A step of a refinement. @param[in] whole The same in each call, as the others.
+  void prepare_piece(const EnergyBranches& whole, const DeviceDraws& draws,
+                     GridWorkspace& workspace) noexcept;
+
   /// @returns From 0 to 1, of the preparation.
   double progress() const noexcept;
   BranchNotes notes() const noexcept;
@@ -88,8 +107,19 @@ class EnergyBranches {
   double tolerance() const noexcept { return tolerance_; }
   /// The number of switches of the branch that has most.
   std::size_t most_switches() const noexcept;
+  /// True if the polynomials reach as far as this place.
+  bool is_within_reach(const DeviceDraws::Place& place) const noexcept;
+  CubePoint to_point(const DeviceDraws::Place& place) const noexcept;
+  /// The share of the draws that are within `half` of a point of an axis, nearly.
+  double share_of_draws(std::size_t axis, double middle, double half) const noexcept;
+  /// The axes of the cube along which the device changes.
+  const std::array<bool, 3>& axes() const noexcept { return axes_; }
   /// True if no place within reach takes a refinement.
   bool is_predicted() const noexcept { return notes().predicted == pool_.count(); }
+
+  /// With `is_ready()`: true if all polynomials hold to 1e-10 of the energy or 1e-6 of its standard
+  /// deviation; those that are off by up to 1e-4 of it count as predicted only.
+  bool is_accurate() const noexcept { return is_accurate_; }
 
   /// The model with the device last set.
   const ModalModel& model() const noexcept { return model_; }
@@ -98,31 +128,37 @@ class EnergyBranches {
 
  private:
   // At each place: known branches, then the search. Then what is missing at places, nodes, checks.
-  enum class Phase : std::uint8_t { kReady, kKnown, kSearch, kMissing, kNodes, kChecks };
+  // A piece begins with the seeds that the whole's signals are.
+  enum class Phase : std::uint8_t { kReady, kKnown, kSearch, kSeeds, kMissing, kNodes, kChecks };
 
   static constexpr std::size_t kBranches = BranchPool::kCapacity;
   static constexpr std::size_t kPlaces = BranchPool::kPlaces;
   static constexpr std::size_t kCorners = kPlaces - 1;
   static constexpr std::size_t kChecks = kCorners + 30;
+  static constexpr std::size_t kChecksOfPiece = kCorners + 12;
   static constexpr std::size_t kCoefficients = 336;  // 8 of degree 4, 6 of 5, 4 of 6.
 
   /// What is known of a branch's polynomial.
   struct Fit {
-    double error = 0.0;        // The largest found,
-    double inner_error = 0.0;  // and that in the middle.
-    double nearest = 0.0;      // To the best of all, at nodes and checks.
+    double error = 0.0;          // The largest found,
+    double inner_error = 0.0;    // and that in the middle.
+    double nearest = 0.0;        // To the best of all, at nodes and checks,
+    double nearest_other = 0.0;  // and where it is another signal than that.
     bool has_failed = false;
   };
 
-  DeviceDraws::Place corner(std::size_t index, double unit) const noexcept;
+  CubePoint corner(std::size_t index) const noexcept;
   DeviceDraws::Place place_at(std::size_t index) const noexcept;
   CubePoint check_at(std::size_t index) const noexcept;
   DeviceDraws::Place from_point(const CubePoint& point) const noexcept;
+  bool is_whole() const noexcept { return !is_piece_; }
   bool is_corner(std::size_t index) const noexcept;
   void next_place() noexcept;
   std::size_t legs_between(const Accelerometer& from, const Accelerometer& to) const noexcept;
   void start_refinement(const DeviceDraws& draws, std::size_t branch, const Accelerometer& device,
                         GridWorkspace& workspace) noexcept;
+  void begin_legs(const Accelerometer& home, const Accelerometer& device,
+                  GridWorkspace& workspace) noexcept;
   void begin_leg(GridWorkspace& workspace) noexcept;
   bool step_refinement(GridWorkspace& workspace) noexcept;
   bool refine_at(const DeviceDraws& draws, const DeviceDraws::Place& place,
@@ -130,6 +166,8 @@ class EnergyBranches {
   void step_known(const DeviceDraws& draws, EnergySearch& search,
                   GridWorkspace& workspace) noexcept;
   void step_search(EnergySearch& search, GridWorkspace& workspace) noexcept;
+  void step_seeds(const EnergyBranches& whole, const DeviceDraws& draws,
+                  GridWorkspace& workspace) noexcept;
   void step_missing(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
   void step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
   void step_checks(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
@@ -138,13 +176,15 @@ class EnergyBranches {
   void end_fit() noexcept;
   void end_checks() noexcept;
   bool can_raise_degree() const noexcept;
+  CubeNodes nodes() const noexcept;
+  std::size_t checks() const noexcept { return is_piece_ ? kChecksOfPiece : kChecks; }
   void compare_branches() noexcept;
+  std::uint32_t needed() const noexcept;
   void remove(std::size_t branch) noexcept;
   void drop_low() noexcept;
   void accept(double part) noexcept;
+  double deviation_of(std::size_t branch) const noexcept;
   double accepted_error(std::size_t branch, double part) const noexcept;
-  bool is_within_reach(const DeviceDraws::Place& place) const noexcept;
-  CubePoint to_point(const DeviceDraws::Place& place) const noexcept;
   double value(std::size_t branch, const CubePoint& point) const noexcept;
   void predict(const CubePoint& point) noexcept;
   std::size_t first_pending() const noexcept;
@@ -161,6 +201,8 @@ class EnergyBranches {
   double coefficients_[kCoefficients] = {};
   double energies_[kBranches] = {};  // At the point that is worked on.
   Fit fits_[kBranches] = {};
+  // Which sets of branches, a bit each, have been the best together: a bit for each set.
+  std::uint32_t best_sets_[(std::size_t{1} << kBranches) / 32] = {};
   Refiner refiner_ = {};
   SearchSettings search_ = {};
   Accelerometer estimate_ = {};
@@ -168,9 +210,11 @@ class EnergyBranches {
   Accelerometer target_ = {};
   double origin_ = 0.0;  // Polynomials are fitted to differences from this.
   double tolerance_ = 0.0;
-  double reach_ = 0.0;  // Polynomials hold up to this unit of a place along each axis.
-  double inverse_reach_ = 0.0;
-  double corner_ = 0.0;  // The unit along each axis where searches are made.
+  // Polynomials hold up to `reach_` from the middle along each axis, in units of a place.
+  DeviceDraws::Place middle_ = {};
+  DeviceDraws::Place reach_ = {};
+  DeviceDraws::Place inverse_reach_ = {};
+  double corner_ = 0.0;  // The part of the reach along each axis where searches are made.
   double energy_ = 0.0;
   std::size_t degree_ = 0;  // 0 without polynomials.
   std::size_t terms_ = 0;
@@ -183,6 +227,10 @@ class EnergyBranches {
   std::array<bool, 3> axes_ = {};
   bool gain_follows_ = false;
   bool is_normal_ = false;
+  bool is_unit_ = false;  // A place is a point.
+  bool is_piece_ = false;
+  bool is_accurate_ = false;
+  bool has_pieces_ = false;
   bool is_refining_ = false;
   Phase phase_ = Phase::kReady;
 };

@@ -13,10 +13,27 @@
 
 namespace emax {
 
+/// A part of the ranges with branches of its own, or cut in two. 10.5 KiB.
+struct TrialPiece {
+  EnergyBranches branches = {};
+  CubePoint middle = {};  ///< In the cube of the whole ranges.
+  CubePoint half = {};
+  std::size_t parent = 0;  ///< The piece that it is half of, counted from 1; 0 for none.
+  std::size_t axis = 0;    ///< That it is cut across,
+  std::size_t child = 0;   ///< into this piece and the next one; 0 if it is not.
+};
+
 struct TrialSettings : DrawSettings {
   bool gain_follows =
       false;  ///< The filter's gain is each trial's sensitivity, not the estimate's.
+  /// S stays at its estimate, and only f0 and beta are drawn: whatever box or covariance say of S
+  /// is left out. For figures in units of S, whose gain is S. Trials take as many numbers as else.
+  bool holds_sensitivity = false;
   SearchSettings search;
+  /// Memory for polynomials of parts of the ranges, where those of the whole do not hold: nobody
+  /// else's while there are trials. None, or `EnergyTrials::kFirstPieces` and more; 96 are enough
+  /// for most.
+  Span<TrialPiece> pieces;
 };
 
 /// The trials of Fig. 5, in any order: `DeviceDraws` draws the device of a trial.
@@ -38,6 +55,11 @@ struct TrialSettings : DrawSettings {
 /// 10.6 KiB beside the workspace.
 class EnergyTrials {
  public:
+  /// The ranges are cut into as many parts along f0, and those in two where polynomials fail.
+  static constexpr std::size_t kFirstPieces = 8;
+  /// Enough for most: 1.1 MB.
+  static constexpr std::size_t kManyPieces = 96;
+
   /// @param[in] at_estimate The model of the estimate, with filter and criterion.
   /// @param[in] best        The search's result at the estimate, with the same search settings.
   /// @returns
@@ -55,9 +77,11 @@ class EnergyTrials {
   /// @param search    Nobody else's until `ready()`.
   /// @param workspace As for a search, without a store; once `ready()` there may be one in it.
   void prepare(EnergySearch& search, GridWorkspace& workspace) noexcept;
-  bool ready() const noexcept { return is_paper() || branches_.is_ready(); }
+  bool ready() const noexcept {
+    return is_paper() || (branches_.is_ready() && (pieces_.empty() || is_cut()));
+  }
   /// @returns From 0 to 1, of the preparation.
-  double progress() const noexcept { return is_paper() ? 1.0 : branches_.progress(); }
+  double progress() const noexcept;
 
   /// @returns The device of one trial; the estimate if there is none, see `is_exhausted()`.
   Accelerometer device(std::uint32_t trial) noexcept;
@@ -94,17 +118,29 @@ class EnergyTrials {
 
   const SearchSettings& search_settings() const noexcept { return search_; }
   /// @returns With `ready()`, whether polynomials answer all trials within their reach.
-  bool predicts() const noexcept { return !is_paper() && branches_.is_predicted(); }
+  bool predicts() const noexcept;
   /// @returns What a trial may be off by, as part of the energy.
-  double tolerance() const noexcept { return branches_.tolerance(); }
-  BranchNotes notes() const noexcept { return branches_.notes(); }
+  double tolerance() const noexcept;
+  BranchNotes notes() const noexcept;
 
  private:
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
+  bool is_cut() const noexcept { return pieces_begun_ != 0 && pieces_ready_ == pieces_used_; }
+  void begin_pieces() noexcept;
+  void prepare_piece(GridWorkspace& workspace) noexcept;
+  void cut(TrialPiece& piece) noexcept;
+  bool is_worth_cutting(const TrialPiece& piece) const noexcept;
+  EnergyBranches& asked() noexcept;
+  EnergyBranches& branches_at(const DeviceDraws::Place& place) noexcept;
   void begin_fixed_point(const Accelerometer& device, GridWorkspace& workspace) noexcept;
   double run(GridWorkspace& workspace) noexcept;
 
   EnergyBranches branches_ = {};
+  Span<TrialPiece> pieces_;
+  std::size_t pieces_used_ = 0;
+  std::size_t pieces_begun_ = 0;
+  std::size_t pieces_ready_ = 0;
+  std::size_t piece_ = 0;  // Of the trial that is made, counted from 1; 0 for the whole.
   DeviceDraws draws_ = {};
   SearchSettings search_ = {};
   FixedPoint fixed_point_ = {};

@@ -45,6 +45,28 @@ Status Evaluation::start_from_model(const Device& device, const Settings& settin
     return status;
   }
   results_.device = device;
+  const ParameterBox& u = device.u;
+  const double us[] = {u.sensitivity, u.natural_frequency_hz, u.damping};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      results_.given_covariance[i][j] = i == j ? us[i] * us[i] : 0.0;
+    }
+  }
+  return prepare(goal);
+}
+
+Status Evaluation::start_from_model(const Device& device, const double (&covariance)[3][3],
+                                    const Settings& settings, Goal goal) noexcept {
+  const Status status = begin(Source::kModel, settings);
+  if (status != Status::kOk) {
+    return status;
+  }
+  results_.device = device;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      results_.given_covariance[i][j] = covariance[i][j];
+    }
+  }
   return prepare(goal);
 }
 
@@ -64,12 +86,10 @@ Status Evaluation::prepare(Goal goal) noexcept {
     return fail(failure);
   }
   results_.limit_mps2 = settings.limit_is_auto ? estimate.sensitivity : settings.limit_mps2;
-  const bool gain_is_given = settings.gain_mode == GainMode::kFixed;
-  const Butterworth filter = {settings.filter_order, settings.cutoff_hz,
-                              gain_is_given ? settings.gain : estimate.sensitivity};
-  const Status status = results_.model.set(estimate, filter, settings.criterion);
+  const Status status =
+      results_.model.set(estimate, reference_filter(results_), measure_of(settings));
   if (status != Status::kOk) {
-    return fail({status, Stage::kIdle, explain(status)});
+    return fail(failure_of_model(status, settings));
   }
   failure = check_goal(results_, settings, goal);
   if (failure.status != Status::kOk) {
@@ -94,6 +114,7 @@ Status Evaluation::pursue(const Settings& settings, Goal goal) noexcept {
   }
   if (!is_same_trials(settings, results_.settings)) {
     results_.drop_trials();
+    results_.drop_uncertainties();
   }
   if (!is_same_trend(settings, results_.settings)) {
     results_.drop_trend();
@@ -106,6 +127,7 @@ Status Evaluation::pursue(const Settings& settings, Goal goal) noexcept {
 void Evaluation::begin_run(Goal goal) noexcept {
   work_.goal_ = goal;
   work_.store_ = {};
+  work_.pieces_ = {};
   work_.stored_ = 0;
   work_.trial_runs_ = false;
   work_.trend_search_runs_ = false;
@@ -124,10 +146,17 @@ void Evaluation::go_on() noexcept {
     begin_energy();
   } else if (goal != Goal::kModel && !results_.is_bound_done) {
     begin_bound();
-  } else if (wants_trials(goal) && results_.is_damping_open() && !results_.is_cut_done) {
+  } else if (needs_trials(goal, results_.settings) && results_.is_damping_open() &&
+             !results_.is_cut_done) {
     begin_cut_range();
-  } else if (wants_trials(goal) && !results_.has_monte_carlo && results_.has_uncertainty()) {
+  } else if (needs_trials(goal, results_.settings) && !results_.has_monte_carlo &&
+             results_.has_uncertainty()) {
     begin_trials();
+  } else if (wants_figures(goal) && begin_next_figure()) {
+    return;
+  } else if (wants_uncertainty(goal) && !results_.uncertainty.is_done &&
+             results_.has_uncertainty()) {
+    begin_uncertainty();
   } else if (wants_trend(goal) && !results_.has_trend && results_.settings.trend_count != 0) {
     results_.stage = Stage::kTrend;
   } else {
@@ -151,6 +180,8 @@ void Evaluation::drop_incomplete() noexcept {
     results_.drop_trend();
   }
 }
+
+void Evaluation::lend_trial_pieces(Span<TrialPiece> pieces) noexcept { work_.pieces_ = pieces; }
 
 void Evaluation::lend_trial_store(Span<double> store) noexcept {
   work_.store_ = store;

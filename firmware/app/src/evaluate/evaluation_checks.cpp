@@ -49,6 +49,8 @@ constexpr char kNoDevice[] =
     "There is no accepted device to go on with; start with points or parameters.";
 constexpr char kOtherSettings[] =
     "A setting of the energy itself has changed; start again for a new energy.";
+constexpr char kNoGain[] =
+    "The in-band error needs a reference filter with a gain above 0; give another gain.";
 constexpr char kTrialsFailed[] =
     "The energies of the trials cannot be summed up; check the units of the parameters.";
 
@@ -91,7 +93,7 @@ Failure check_grids(const EvaluationResults& results, const Settings& settings,
     const bool is_energy = i == 0;
     const double duration_s = is_energy ? settings.duration_s : settings.trend_s[i - 1];
     const std::size_t cells = search_cells(results.model, search_settings(settings, duration_s));
-    if (cells > kMaxCells) {
+    if (cells > kMaxCells && (is_energy || !adapts_trend(settings))) {
       return failure_of_search(Status::kTooManyCells, settings.method,
                                is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
     }
@@ -168,6 +170,33 @@ Failure failure_of_search(Status status, Method method, Stage stage, double dura
     reason = kTooManySwitches;
   }
   return {status, stage, reason, duration_s};
+}
+
+Failure failure_of_model(Status status, const Settings& settings) noexcept {
+  const bool has_no_gain = settings.criterion == Criterion::kInBandError &&
+                           settings.gain_mode == GainMode::kFixed && settings.gain == 0.0;
+  return {status, Stage::kIdle, has_no_gain ? kNoGain : explain(status)};
+}
+
+ReferenceFilter reference_filter(const EvaluationResults& results) noexcept {
+  const Settings& settings = results.settings;
+  const bool gain_is_given = settings.gain_mode == GainMode::kFixed;
+  return butterworth({settings.filter_order, settings.cutoff_hz,
+                      gain_is_given ? settings.gain : results.device.estimate.sensitivity});
+}
+
+ErrorMeasure measure_of(const Settings& settings) noexcept {
+  const bool is_in_band = settings.criterion == Criterion::kInBandError;
+  return {settings.criterion, is_in_band ? ReferenceDelay{settings.delay_mode, settings.delay_s}
+                                         : ReferenceDelay{DelayMode::kNone, 0.0}};
+}
+
+bool needs_trials(Goal goal, const Settings& settings) noexcept {
+  return wants_trials(goal) || (goal == Goal::kUncertainty && settings.adaptive);
+}
+
+bool adapts_trend(const Settings& settings) noexcept {
+  return is_same_trend(settings, kDefaultSettings);
 }
 
 SearchSettings search_settings(const Settings& settings, double duration_s) noexcept {

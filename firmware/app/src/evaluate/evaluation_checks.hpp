@@ -42,6 +42,23 @@ Failure failure_of_trials(Status status, Stage stage, bool is_exhausted) noexcep
 /// @returns Why a search has no result.
 Failure failure_of_search(Status status, Method method, Stage stage, double duration_s) noexcept;
 
+/// @returns Why there is no error system.
+Failure failure_of_model(Status status, const Settings& settings) noexcept;
+
+/// The reference filter of a device that is known.
+ReferenceFilter reference_filter(const EvaluationResults& results) noexcept;
+
+/// What these settings call the error.
+ErrorMeasure measure_of(const Settings& settings) noexcept;
+
+/// @returns Whether a goal needs the trials of the box: also for their number, where it is
+/// adaptive.
+bool needs_trials(Goal goal, const Settings& settings) noexcept;
+
+/// @returns Whether a length of the trend is left out where it needs more cells or switches than
+/// there is room for: of the default trend, which nobody has asked for.
+bool adapts_trend(const Settings& settings) noexcept;
+
 /// The settings of a search for this time.
 SearchSettings search_settings(const Settings& settings, double duration_s) noexcept;
 

@@ -69,8 +69,37 @@ void EvaluationResults::clear() noexcept {
   is_bound_done = false;
   judgement = {};
   has_fit_draws = false;
+  ideal = {};
+  band.clear();
+  matched.clear();
   drop_trials();
+  drop_uncertainties();
   drop_trend();
+}
+
+void FigureResults::clear() noexcept {
+  is_done = false;
+  status = Status::kOk;
+  has_bound = false;
+  switches = 0;
+  energy_v2s = 0.0;
+  rounding_v2s = 0.0;
+  bound_v2s = 0.0;
+  delay_s = 0.0;
+  epsilon_percent = 0.0;
+  uncertainty = {};
+}
+
+void EvaluationResults::drop_uncertainties() noexcept {
+  uncertainty = {};
+  band.uncertainty = {};
+  matched.uncertainty = {};
+}
+
+bool EvaluationResults::has_uncertainties() const noexcept {
+  const bool has_band = !band.exists() || band.uncertainty.is_done;
+  const bool has_matched = !matched.exists() || matched.uncertainty.is_done;
+  return uncertainty.is_done && has_band && has_matched;
 }
 
 void EvaluationResults::drop_trials() noexcept {
@@ -82,6 +111,8 @@ void EvaluationResults::drop_trials() noexcept {
 
 void EvaluationResults::drop_trend() noexcept {
   trend_count = 0;
+  trend_looked_at = 0;
+  trend_left_out = 0;
   has_trend = false;
 }
 
@@ -115,8 +146,13 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
       return holds_energy && holds_trials;
     case Goal::kTrend:
       return holds_energy && holds_trend;
+    case Goal::kBand:
+      return holds_energy && has_figures();
+    case Goal::kUncertainty:
+      return holds_energy && uncertainty.is_done && is_same_trials(settings, wanted);
     case Goal::kReport:
-      return holds_energy && (holds_trials || has_rest_of_trials) &&
+      return holds_energy && has_figures() &&
+             ((holds_trials && has_uncertainties()) || has_rest_of_trials) &&
              (holds_trend || wanted.trend_count == 0) && (holds_draws || source == Source::kModel);
   }
   return false;
@@ -135,18 +171,17 @@ double EvaluationResults::covariance(std::size_t i, std::size_t j) const noexcep
   if (source == Source::kPoints) {
     return fit.result().covariance[i][j];
   }
-  if (i != j) {
-    return 0.0;
-  }
-  const double u = i == 0   ? device.u.sensitivity
-                   : i == 1 ? device.u.natural_frequency_hz
-                            : device.u.damping;
-  return u * u;
+  return given_covariance[i][j];
 }
 
 double EvaluationResults::trial_scale(const Settings& wanted) const noexcept {
   const double ratio = source == Source::kPoints ? fit.result().birge_ratio : 1.0;
   return wanted.birge && ratio > 1.0 ? ratio : 1.0;
+}
+
+double EvaluationResults::percent_of(double energy) const noexcept {
+  constexpr double kPercent = 100.0;
+  return kPercent * sqrt(energy / settings.duration_s) / (device.estimate.sensitivity * limit_mps2);
 }
 
 double EvaluationResults::rms_error_v() const noexcept {

@@ -58,6 +58,12 @@ void Evaluation::step_stage() noexcept {
     case Stage::kGuard:
       step_guard();
       return;
+    case Stage::kIdeal:
+    case Stage::kBand:
+    case Stage::kMatched:
+    case Stage::kUncertainty:
+      step_figure();
+      return;
     case Stage::kTrend:
       step_trend();
       return;
@@ -82,15 +88,17 @@ double Evaluation::progress_of_stage() const noexcept {
     case Stage::kAdaptive:
       return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
-      // With a store that holds all trials only the first pass takes time.
-      return work_.store_.size() < work_.trials_
-                 ? work_.part_.trial.monte_carlo.progress()
-                 : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
+      return progress_of_trials();
     case Stage::kGuard:
       return work_.guard_.progress();
+    case Stage::kIdeal:
+    case Stage::kBand:
+    case Stage::kMatched:
+    case Stage::kUncertainty:
+      return progress_of_figure();
     case Stage::kTrend: {
       const double running = work_.trend_search_runs_ ? work_.search_.progress() : 0.0;
-      return (static_cast<double>(results_.trend_count) + running) /
+      return (static_cast<double>(results_.trend_looked_at) + running) /
              static_cast<double>(results_.settings.trend_count);
     }
     case Stage::kIdle:
@@ -100,6 +108,13 @@ double Evaluation::progress_of_stage() const noexcept {
       return work_.progress_;
   }
   return work_.progress_;
+}
+
+double Evaluation::progress_of_trials() const noexcept {
+  // With a store that holds all trials only the first pass takes time.
+  return work_.store_.size() < work_.trials_
+             ? work_.part_.trial.monte_carlo.progress()
+             : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
 }
 
 // The scatter of a mean over blocks falls with the root of their number: that says how many it
@@ -246,10 +261,23 @@ void Evaluation::step_bound() noexcept {
 
 void Evaluation::begin_trials() noexcept {
   const Settings& settings = results_.settings;
+  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
+  work_.stored_ = 0;
+  const Status status =
+      part->trials.start(results_.model, results_.maximum, trial_settings(settings.distribution));
+  if (status != Status::kOk) {
+    (void)fail(failure_of_width(status, settings.distribution));
+    return;
+  }
+  results_.stage = Stage::kPrediction;
+}
+
+TrialSettings Evaluation::trial_settings(Distribution distribution) const noexcept {
+  const Settings& settings = results_.settings;
   const ParameterBox& u = results_.device.u;
   TrialSettings trial_settings;
   const double scale = results_.trial_scale();
-  trial_settings.distribution = settings.distribution;
+  trial_settings.distribution = distribution;
   trial_settings.box = {scale * u.sensitivity, scale * u.natural_frequency_hz, scale * u.damping};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -259,13 +287,8 @@ void Evaluation::begin_trials() noexcept {
   trial_settings.generator = seeded_generator();
   trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings, settings.duration_s);
-  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
-  const Status status = part->trials.start(results_.model, results_.maximum, trial_settings);
-  if (status != Status::kOk) {
-    (void)fail(failure_of_width(status, settings.distribution));
-    return;
-  }
-  results_.stage = Stage::kPrediction;
+  trial_settings.pieces = work_.pieces_;
+  return trial_settings;
 }
 
 void Evaluation::begin_cut_range() noexcept {
@@ -356,6 +379,7 @@ void Evaluation::run_slice() noexcept {
         ++work_.stored_;
       }
     }
+    note_root(value);
     if (adapts) {
       part.adaptive.add(value, part.monte_carlo, store);
     } else {
@@ -428,17 +452,24 @@ void Evaluation::step_guard() noexcept {
 }
 
 void Evaluation::step_trend() noexcept {
-  const double duration_s = results_.settings.trend_s[results_.trend_count];
+  const double duration_s = results_.settings.trend_s[results_.trend_looked_at];
   if (!work_.trend_search_runs_) {
     if (duration_s == results_.settings.duration_s) {
       add_trend_point(results_.energy_v2s());
       return;
     }
-    work_.trend_search_runs_ = begin_search(Stage::kTrend, duration_s);
+    const Status status =
+        work_.search_.start(results_.model, search_settings(results_.settings, duration_s));
+    if (!leaves_out(status)) {
+      work_.trend_search_runs_ = is_well(status, Stage::kTrend, duration_s);
+    }
     return;
   }
   EnergySearch& search = work_.search_;
   const Status status = search.step(results_.model, work_.grid_);
+  if (leaves_out(status)) {
+    return;
+  }
   if (is_well(status, Stage::kTrend, duration_s) && search.done()) {
     work_.trend_search_runs_ = false;
     add_trend_point(results_.a2() * search.result().energy);
@@ -447,20 +478,47 @@ void Evaluation::step_trend() noexcept {
 
 void Evaluation::add_trend_point(double energy_v2s) noexcept {
   const Settings& settings = results_.settings;
-  results_.trend_table[results_.trend_count] = {settings.trend_s[results_.trend_count], energy_v2s};
+  results_.trend_table[results_.trend_count] = {settings.trend_s[results_.trend_looked_at],
+                                                energy_v2s};
   ++results_.trend_count;
-  if (results_.trend_count == settings.trend_count) {
+  ++results_.trend_looked_at;
+  if (results_.trend_looked_at == settings.trend_count) {
     end_trend();
   }
 }
 
+/// @returns Whether this time is left out for what its search answered; the next one is then due.
+bool Evaluation::leaves_out(Status of_search) noexcept {
+  const bool is_too_long =
+      of_search == Status::kTooManyCells || of_search == Status::kTooManySwitches;
+  if (!is_too_long || !adapts_trend(results_.settings)) {
+    return false;
+  }
+  work_.trend_search_runs_ = false;
+  results_.trend_left_out |= std::uint32_t{1} << results_.trend_looked_at;
+  ++results_.trend_looked_at;
+  if (results_.trend_looked_at == results_.settings.trend_count) {
+    end_trend();
+  }
+  return true;
+}
+
 void Evaluation::end_trend() noexcept {
   double energy_v2s[kMaxTrendPoints];
+  double time_s[kMaxTrendPoints];
+  if (results_.trend_left_out != 0 && results_.trend_count < 2) {
+    results_.trend_count = 0;  // No line.
+    results_.trend = {};
+    results_.has_trend = true;
+    results_.stage = Stage::kDone;
+    return;
+  }
   for (std::size_t i = 0; i < results_.trend_count; ++i) {
     energy_v2s[i] = results_.trend_table[i].energy_v2s;
+    time_s[i] = results_.trend_table[i].duration_s;
   }
-  const Span<const double> times_s(results_.settings.trend_s.data(), results_.trend_count);
-  results_.trend = linear_trend(times_s, Span<const double>(energy_v2s, results_.trend_count));
+  results_.trend = linear_trend(Span<const double>(time_s, results_.trend_count),
+                                Span<const double>(energy_v2s, results_.trend_count));
   if (results_.trend.status != Status::kOk) {
     (void)fail({results_.trend.status, Stage::kTrend, explain(results_.trend.status)});
     return;

@@ -23,6 +23,14 @@ const char* name_of(Stage stage) noexcept {
       return "Monte Carlo";
     case Stage::kGuard:
       return "guard";
+    case Stage::kIdeal:
+      return "ideal sensor";
+    case Stage::kBand:
+      return "in-band error";
+    case Stage::kMatched:
+      return "in-band error, delay out";
+    case Stage::kUncertainty:
+      return "uncertainty";
     case Stage::kTrend:
       return "trend";
     case Stage::kDone:

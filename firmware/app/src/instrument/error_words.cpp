@@ -97,7 +97,7 @@ constexpr ObstacleWords kObstacles[] = {
     {Obstacle::kNoDevice, ErrorCode::kDataCorruptOrStale, "no device: CALC:MOD, or INIT:SWE"},
     {Obstacle::kNoPoints, ErrorCode::kDataCorruptOrStale, "no points: INIT:SWE or TRAC:FRES:DATA"},
     {Obstacle::kNoFit, ErrorCode::kDataCorruptOrStale,
-     "NORM and BIRG need the points of the fit: INIT:SWE"},
+     "BIRG needs the points of the fit: INIT:SWE"},
     {Obstacle::kGrid, ErrorCode::kSettingsConflict,
      "T/step > " EMAX_TEXT_OF(EMAX_MAX_CELLS) ": shorten T or longer STEP"},
     {Obstacle::kNoUncertainty, ErrorCode::kDataCorruptOrStale,

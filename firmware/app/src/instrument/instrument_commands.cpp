@@ -147,6 +147,7 @@ constexpr scpi::Command<Instrument> kWork[] = {
 
 constexpr scpi::Command<Instrument> kEnergy[] = {
     {"CALCulate:ENERgy", kQuery, "", "The maximum energy: E,xi,bound,n,t1,...,tn", kPlain, C::energy},
+    {"CALCulate:ENERgy:BAND", kQuery, "", "The in-band error with that delay taken out: E,rms_percent,bound,n,t1,...", kPlain, C::band},
     {"CALCulate:ENERgy:EVALuate", kQuery, "[<t1>,...]", "Energy of the signal that starts at +a and changes sign at these times", kPlain, C::evaluate},
     {"CALCulate:ENERgy:FPA", kQuery, "", "The fixed point of the paper: iterations,E_0,E_1,...", kPlain, C::fixed_point},
     {"CALCulate:AERRor", kQuery, "", "The largest absolute error, V", kPlain, C::absolute_error},
@@ -156,6 +157,7 @@ constexpr scpi::Command<Instrument> kEnergy[] = {
 
 constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
+    {"CALCulate:UNCertainty", kQuery, "", "Of E, by JCGM 101 with normal parameters: u,U,low,high,shortest_low,shortest_high,redrawn", kPlain, C::uncertainty},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
     {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report_text},
 

@@ -97,6 +97,8 @@ struct InstrumentCommands {
   // Energy
 
   static void energy(Instrument& i, Call& call) noexcept;
+  static void band(Instrument& i, Call& call) noexcept;
+  static void uncertainty(Instrument& i, Call& call) noexcept;
   static void evaluate(Instrument& i, Call& call) noexcept;
   static void fixed_point(Instrument& i, Call& call) noexcept;
   static void absolute_error(Instrument& i, Call& call) noexcept;

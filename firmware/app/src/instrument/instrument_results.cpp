@@ -242,6 +242,43 @@ void InstrumentCommands::energy(Instrument& i, Call& call) noexcept {
   call.answer_items(count);
 }
 
+void InstrumentCommands::band(Instrument& i, Call& call) noexcept {
+  const EvaluationResults& evaluation = results_of(i);
+  const bool is_plain = i.settings().delay_mode == DelayMode::kNone;
+  const FigureResults& figure = is_plain ? evaluation.band : evaluation.matched;
+  if (call.stage() == Call::Stage::kItem) {
+    call.answer().number(figure.times_s()[call.item()]);
+    return;
+  }
+  if (!i.provide(call, Goal::kBand)) {
+    return;
+  }
+  if (!figure.exists()) {
+    call.fail(ErrorCode::kSettingsConflict, explain(figure.status));
+    return;
+  }
+  call.answer().number(figure.energy_v2s).number(evaluation.percent_of(figure.energy_v2s));
+  call.answer().number(figure.has_bound ? figure.bound_v2s : kNoDefault);
+  call.answer().integer(figure.switches);
+  call.answer_items(figure.times_s().size());
+}
+
+void InstrumentCommands::uncertainty(Instrument& i, Call& call) noexcept {
+  if (!i.provide(call, Goal::kUncertainty)) {
+    return;
+  }
+  const EnergyUncertainty& known = results_of(i).uncertainty;
+  if (!known.exists()) {
+    call.fail(ErrorCode::kSettingsConflict, "uncertainties too large for the trials");
+    return;
+  }
+  scpi::Response& out = call.answer();
+  out.number(known.u_v2s).number(kCoverageFactor * known.u_v2s);
+  out.number(known.symmetric.low).number(known.symmetric.high);
+  out.number(known.shortest.low).number(known.shortest.high);
+  out.integer(known.redraws);
+}
+
 void InstrumentCommands::evaluate(Instrument& i, Call& call) noexcept {
   if (!i.provide(call, Goal::kModel)) {
     return;
@@ -346,6 +383,10 @@ void InstrumentCommands::trend(Instrument& i, Call& call) noexcept {
     return;
   }
   if (!i.provide(call, Goal::kTrend)) {
+    return;
+  }
+  if (results_of(i).trend_points().empty()) {
+    call.fail(ErrorCode::kSettingsConflict, "trend times too long: CALC:TREN? T1,T2,...");
     return;
   }
   call.answer().number(results_of(i).trend.slope).number(results_of(i).trend.intercept);

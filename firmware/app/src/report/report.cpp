@@ -5,7 +5,9 @@
 
 #include "emax/base/elementary.hpp"
 
+#include "report_figures.hpp"
 #include "report_parts.hpp"
+#include "report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -14,7 +16,6 @@ constexpr double kLargeResidual = 3.0;
 constexpr std::size_t kResidualsShown = 10;
 constexpr std::size_t kFrequencyWidth = 2 + kLabelWidth + 13;
 constexpr std::size_t kTraceShown = 12;
-constexpr std::size_t kTimesPerLine = 6;
 constexpr double kLeastCorrelationShown = 0.0005;  // Less would be -0.000.
 // Below it the energies leave a line by 4 % of their range or more.
 constexpr double kLeastTrendCorrelation = 0.999;
@@ -110,10 +111,16 @@ void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept 
 
 void write_method(const Settings& settings, ReportWriter& out) noexcept {
   out.label("Criterion");
-  if (settings.criterion == Criterion::kIntegralSquareError) {
-    out.text("integral-square error: energy of sensor minus filter, equation (15)");
-  } else {
-    out.text("energy difference: E(sensor) minus E(filter), equations (5), (13)");
+  switch (settings.criterion) {
+    case Criterion::kIntegralSquareError:
+      out.text("integral-square error: energy of sensor minus filter, equation (15)");
+      break;
+    case Criterion::kEnergyDifference:
+      out.text("energy difference: E(sensor) minus E(filter), equations (5), (13)");
+      break;
+    case Criterion::kInBandError:
+      out.text("in-band error: energy of the filter on sensor minus G x");
+      break;
   }
   out.line();
   out.label("Method");
@@ -389,30 +396,17 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   }
   out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
   if (duration_s < settling.time_s) {
-    out.part(ReportPart::kNote)
+    const bool is_much = duration_s < kMuchShorter * settling.time_s;
+    out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
+        .text(is_much ? "  WARNING: T is much shorter" : "  Note: T is shorter")
         .text(
-            "  Note: T is shorter than the settling time, so the error has not developed within "
-            "T.\n"
-            "  The paper takes T from the settling time; give a longer T to compare devices.\n");
+            " than the settling time, so the error has not developed within\n"
+            "  T. The paper takes T from the settling time: give a T of ");
+    out.general(kMilli * settling.time_s, 3).text(" ms or more.\n");
   }
 }
 
 // Maximum energy
-
-void write_switching_times(const SwitchingSignal& signal, ReportWriter& out) noexcept {
-  const Span<const double> times_s = signal.times_s();
-  out.label("Signal").text("+a from the start, ").integer(times_s.size());
-  out.text(times_s.size() == 1 ? " switch" : " switches");
-  out.text(times_s.empty() ? "" : ", at (ms)");
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    if (i % kTimesPerLine == 0) {
-      out.line();
-      out.indent();
-    }
-    out.right(11).fixed(kMilli * times_s[i], 6);
-  }
-  out.line();
-}
 
 void write_trace(const EvaluationResults& results, ReportWriter& out) noexcept {
   const Span<const double> trace = results.trace();
@@ -471,8 +465,8 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
     out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");
   }
   out.line();
-  const bool is_ise = results.settings.criterion == Criterion::kIntegralSquareError;
-  out.label(is_ise ? "rms error sqrt(E/T)" : "sqrt(E/T)");
+  const bool is_error = results.settings.criterion != Criterion::kEnergyDifference;
+  out.label(is_error ? "rms error sqrt(E/T)" : "sqrt(E/T)");
   if (energy >= 0.0) {
     const double full = results.device.estimate.sensitivity * results.limit_mps2;
     const double rms = results.rms_error_v();
@@ -480,7 +474,8 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   } else {
     out.text("none, the energy difference is negative").line();
   }
-  write_switching_times(results.maximum.signal, out);
+  const SwitchingSignal& signal = results.maximum.signal;
+  write_switching_times(signal.count(), signal.times_s(), out);
   write_how_found(results, out);
   if (results.settings.method == Method::kBest) {
     out.part(ReportPart::kText).text("  The best signal found.\n");
@@ -597,8 +592,9 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
   }
   const bool is_box = results.settings.distribution == Distribution::kBox;
   out.heading(ReportSection::kMonteCarlo,
-              is_box ? "MONTE CARLO (S, f0 and beta uniform within estimate +- u, equation (21))"
-                     : "MONTE CARLO (S, f0 and beta jointly normal, with their covariance)");
+              is_box ? "MONTE CARLO OF THE PAPER (S, f0 and beta uniform within estimate +- u, "
+                       "equation (21))"
+                     : "MONTE CARLO OF THE PAPER (but S, f0 and beta jointly normal)");
   if (!results.has_monte_carlo) {
     out.part(ReportPart::kText).text("  Not run: all uncertainties are zero.\n");
     return;
@@ -611,21 +607,41 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
   }
   write_maximum(results, result, out);
   out.label("Mean of E").scientific(result.mean, 8).text(" V^2 s").line();
-  out.label("u(E)").scientific(result.u, 2).text(" V^2 s, the standard deviation of the trials");
-  out.line();
-  write_interval(out, "Symmetric interval", result.probability, result.symmetric);
-  write_interval(out, "Shortest interval", result.probability, result.shortest);
+  out.label(is_box ? "Std deviation over box" : "Standard deviation");
+  out.scientific(result.u, 2).text(" V^2 s").line();
+  write_interval(out, is_box ? "Interval over the box" : "Symmetric interval", result.probability,
+                 result.symmetric);
+  write_interval(out, is_box ? "Shortest over the box" : "Shortest interval", result.probability,
+                 result.shortest);
   write_guard(results.guard, out);
   write_trial_warnings(results.trials, out);
 }
 
 // Trend
 
+void write_left_out(const EvaluationResults& results, ReportWriter& out) noexcept {
+  if (results.trend_left_out == 0) {
+    return;
+  }
+  out.part(ReportPart::kNote).text("  Note: left out, as they need more than ");
+  out.integer(kMaxSwitches).text(" switches or ").integer(kMaxCells).text(" cells: T =");
+  bool is_first = true;
+  for (std::size_t i = 0; i < results.settings.trend_count; ++i) {
+    if ((results.trend_left_out >> i & 1U) != 0) {
+      out.text(is_first ? " " : ", ").general(kMilli * results.settings.trend_s[i], 8);
+      is_first = false;
+    }
+  }
+  out.text(" ms.\n");
+}
+
 void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   const Span<const TrendPoint> points = results.trend_points();
   out.heading(ReportSection::kTrend, "TREND (maximum energy at the estimates against T)");
   if (points.empty()) {
-    out.part(ReportPart::kText).text("  Not asked for.\n");
+    out.part(ReportPart::kText);
+    out.text(results.trend_left_out == 0 ? "  Not asked for.\n" : "  No line: too few lengths.\n");
+    write_left_out(results, out);
     return;
   }
   const Trend& trend = results.trend;
@@ -644,6 +660,7 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   out.text(trend.intercept < 0.0 ? "- " : "+ ").general(abs(trend.intercept), 7).text(" V^2 s");
   out.line();
   out.label("Correlation").fixed(trend.correlation, 7).line();
+  write_left_out(results, out);
   if (abs(trend.correlation) < kLeastTrendCorrelation) {
     out.part(ReportPart::kNote)
         .text("  Note: E is not linear in T here; the line says nothing about other lengths.\n");
@@ -666,6 +683,7 @@ void write_report(const EvaluationResults& results, const ReportContext& context
                   ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
   write_title(context.labels, writer);
+  write_figures(results, writer);
   write_input(results, context, writer);
   if (context.measurement != nullptr) {
     write_measurement_section(*context.measurement, writer);
@@ -675,6 +693,8 @@ void write_report(const EvaluationResults& results, const ReportContext& context
   }
   write_error_system(results, writer);
   write_energy(results, writer);
+  write_in_band(results, writer);
+  write_uncertainty(results, writer);
   write_monte_carlo(results, writer);
   write_trend(results, writer);
 }

@@ -3,8 +3,10 @@
 #include "emax/app/base/version.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/status.hpp"
 
 #include "report_parts.hpp"
+#include "report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -200,12 +202,23 @@ void write_impulse_response(const EvaluationResults& results, JsonWriter& json) 
   json.close();
 }
 
+const char* name_of(Criterion criterion) noexcept {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "ise";
+    case Criterion::kEnergyDifference:
+      return "difference";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "band";
+}
+
 void write_energy(const EvaluationResults& results, JsonWriter& json) noexcept {
   const Settings& settings = results.settings;
   const MaximumEnergy& maximum = results.maximum;
-  const bool is_ise = settings.criterion == Criterion::kIntegralSquareError;
   json.open("energy");
-  json.words("criterion", is_ise ? "ise" : "difference");
+  json.words("criterion", name_of(settings.criterion));
   json.words("method", settings.method == Method::kBest ? "best" : "paper");
   json.number("T", settings.duration_s);
   json.number("a", results.limit_mps2);
@@ -229,6 +242,115 @@ void write_energy(const EvaluationResults& results, JsonWriter& json) noexcept {
     json.null("absolute_error");
   }
   json.close();
+}
+
+// The in-band errors
+
+void write_interval_in_percent(const char* name, const EvaluationResults& results,
+                               const CoverageInterval& interval, JsonWriter& json) noexcept {
+  json.pair(name, results.percent_of(interval.low), results.percent_of(interval.high));
+}
+
+void write_figure_uncertainty(const EvaluationResults& results, const EnergyUncertainty& known,
+                              JsonWriter& json) noexcept {
+  if (!known.exists()) {
+    for (const char* name :
+         {"u", "U", "interval", "shortest", "u_percent", "U_percent", "interval_percent"}) {
+      json.null(name);
+    }
+    return;
+  }
+  json.number("u", known.u_v2s);
+  json.number("U", kCoverageFactor * known.u_v2s);
+  json.pair("interval", known.symmetric.low, known.symmetric.high);
+  json.pair("shortest", known.shortest.low, known.shortest.high);
+  json.number("u_percent", known.u_percent);
+  json.number("U_percent", kCoverageFactor * known.u_percent);
+  write_interval_in_percent("interval_percent", results, known.symmetric, json);
+}
+
+void write_figure(const EvaluationResults& results, const FigureResults& figure,
+                  JsonWriter& json) noexcept {
+  json.number("E", figure.energy_v2s);
+  json.number("rms", sqrt(figure.energy_v2s / results.settings.duration_s));
+  json.number("rms_percent", results.percent_of(figure.energy_v2s));
+  write_number_or_null("bound", figure.has_bound, figure.bound_v2s, json);
+  write_number_or_null("bound_percent", figure.has_bound, results.percent_of(figure.bound_v2s),
+                       json);
+  json.open_row("switch_times");
+  for (const double time_s : figure.times_s()) {
+    json.number(nullptr, time_s);
+  }
+  json.close_row();
+  write_figure_uncertainty(results, figure.uncertainty, json);
+}
+
+void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
+  const FigureResults& matched = results.matched;
+  if (!results.band.exists()) {
+    json.null("band");
+    return;
+  }
+  json.open("band");
+  write_figure(results, results.band, json);
+  if (matched.exists()) {
+    json.open("matched");
+    json.number("delay_s", matched.delay_s);
+    json.number("epsilon_percent", matched.epsilon_percent);
+    write_figure(results, matched, json);
+    json.close();
+    json.null("matched_refused");
+  } else {
+    json.null("matched");
+    json.words("matched_refused", explain(matched.status));
+  }
+  json.close();
+}
+
+void write_ideal(const EvaluationResults& results, JsonWriter& json) noexcept {
+  if (!results.ideal.exists()) {
+    json.null("ideal");
+    return;
+  }
+  json.open("ideal");
+  json.number("E", results.ideal.energy_v2s);
+  json.number("rms_percent", results.percent_of(results.ideal.energy_v2s));
+  json.close();
+}
+
+void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexcept {
+  const EnergyUncertainty& known = results.uncertainty;
+  if (!known.exists()) {
+    json.null("uncertainty");
+    return;
+  }
+  json.open("uncertainty");
+  json.words("distribution", "normal");
+  json.number("probability", results.settings.probability);
+  json.number("u", known.u_v2s);
+  json.number("U", kCoverageFactor * known.u_v2s);
+  json.pair("interval", known.symmetric.low, known.symmetric.high);
+  json.pair("shortest", known.shortest.low, known.shortest.high);
+  json.integer("redrawn", known.redraws);
+  json.close();
+}
+
+void write_warnings(const EvaluationResults& results, const ReportContext& context,
+                    JsonWriter& json) noexcept {
+  json.open("warnings", '[');
+  for (const Warning warning : kWarnings) {
+    if (holds(warning, results, context)) {
+      json.open(nullptr);
+      json.words("about", about(warning));
+      json.words("text", words_of(warning));
+      json.close();
+    }
+  }
+  json.close(']');
+}
+
+bool is_simulated(const ReportContext& context) noexcept {
+  return context.measurement != nullptr && context.measurement->simulated != nullptr;
 }
 
 void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexcept {
@@ -360,8 +482,13 @@ void write_json(const EvaluationResults& results, const ReportContext& context,
   write_filter(results, json);
   write_impulse_response(results, json);
   write_energy(results, json);
+  write_band(results, json);
+  write_ideal(results, json);
+  write_uncertainty(results, json);
   write_monte_carlo(results, json);
   write_trend(results, json);
+  write_warnings(results, context, json);
+  json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
 }
@@ -395,9 +522,13 @@ void write_measurement_json(const ReportContext& context, const EvaluationResult
   write_head(context.labels, json);
   json.null("model");
   write_bench(context.measurement, refused, json);
-  for (const char* part : {"filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
+  for (const char* part : {"filter", "impulse_response", "energy", "band", "ideal", "uncertainty",
+                           "monte_carlo", "trend"}) {
     json.null(part);
   }
+  json.open("warnings", '[');
+  json.close(']');
+  json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
 }

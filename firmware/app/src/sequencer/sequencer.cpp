@@ -126,19 +126,19 @@ void Sequencer::end_sweep() noexcept {
 
 // The evaluation
 
-/// Of a fit of before power off the evaluation takes the parameters and their u, nothing more.
+/// Of a fit of before power off the evaluation takes the parameters with their covariance, but not
+/// the Birge ratio.
 bool Sequencer::needs_lost_fit(const Settings& settings) const noexcept {
   const Identification& fit = identification_;
   const bool is_poor = fit.chi2 > static_cast<double>(fit.dof);
-  return has_identification_ && fit.source == Source::kPoints &&
-         (settings.distribution == Distribution::kNormal || (settings.birge && is_poor));
+  return has_identification_ && fit.source == Source::kPoints && settings.birge && is_poor;
 }
 
 Refusal Sequencer::missing_input(const Settings& settings, Goal goal) const noexcept {
   if (origin_ == Origin::kNothing) {
     return {Obstacle::kNoDevice};
   }
-  if (wants_trials(goal) && needs_lost_fit(settings)) {
+  if ((wants_trials(goal) || wants_uncertainty(goal)) && needs_lost_fit(settings)) {
     return {Obstacle::kNoFit};
   }
   if (origin_ != Origin::kModel && points_.size() == 0) {
@@ -152,8 +152,13 @@ Status Sequencer::start_evaluation(const Settings& settings, Goal goal) noexcept
   if (is_of_device() && evaluation_.holds_energy_of(settings)) {
     return run.pursue(settings, goal);
   }
-  return origin_ == Origin::kModel ? run.start_from_model(identification_.device, settings, goal)
-                                   : run.start_from_points(points_, settings, goal);
+  if (origin_ != Origin::kModel) {
+    return run.start_from_points(points_, settings, goal);
+  }
+  const bool is_fit = has_identification_ && identification_.source == Source::kPoints;
+  return is_fit ? run.start_from_model(identification_.device, identification_.covariance, settings,
+                                       goal)
+                : run.start_from_model(identification_.device, settings, goal);
 }
 
 Refusal Sequencer::evaluate(const Settings& settings, Goal goal) noexcept {
@@ -169,6 +174,7 @@ Refusal Sequencer::evaluate(const Settings& settings, Goal goal) noexcept {
     return {Obstacle::kEvaluation, status};
   }
   evaluation_run().lend_trial_store(trial_store_);
+  evaluation_run().lend_trial_pieces(trial_pieces_);
   goal_ = goal;
   begin(Job::kEvaluation);
   if (evaluation_.done()) {
@@ -181,7 +187,8 @@ void Sequencer::end_evaluation() noexcept {
   job_ = Job::kNone;
   if (evaluation_.status() != Status::kOk) {
     failure_ = {Obstacle::kEvaluation, evaluation_.status()};
-  } else if (goal_ == Goal::kMonteCarlo && !evaluation_.has_monte_carlo) {
+  } else if ((goal_ == Goal::kMonteCarlo && !evaluation_.has_monte_carlo) ||
+             (goal_ == Goal::kUncertainty && !evaluation_.uncertainty.is_done)) {
     failure_ = {Obstacle::kNoUncertainty};
   } else if (goal_ == Goal::kTrend && !evaluation_.has_trend) {
     failure_ = {Obstacle::kNoTimes};

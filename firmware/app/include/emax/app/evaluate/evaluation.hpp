@@ -37,7 +37,7 @@ class EvaluationWorkspace;
 ///
 /// A run is two references: what it has found is in the results, what it needs to go on in the
 /// workspace. A new one on the same two goes on where the last one was. Both together take less
-/// than 96 KiB. Results are those of the settings and the device alone: they depend neither on
+/// than 98 KiB. Results are those of the settings and the device alone: they depend neither on
 /// earlier evaluations nor on lent memory.
 class Evaluation {
  public:
@@ -64,6 +64,10 @@ class Evaluation {
   /// Carlo run.
   Status start_from_model(const Device& device, const Settings& settings,
                           Goal goal = Goal::kReport) noexcept;
+
+  /// The same with the covariance of S, f0 and beta, of a fit that was made before.
+  Status start_from_model(const Device& device, const double (&covariance)[3][3],
+                          const Settings& settings, Goal goal = Goal::kReport) noexcept;
 
   /// Goes on with the same device to another goal: what is complete is kept, what the goal lacks is
   /// computed. A run that is under way is stopped as by `stop()`.
@@ -99,6 +103,11 @@ class Evaluation {
   /// (`Wlsp::give_damping()`); 0 for none. For the starts to come, on the same results.
   void give_damping(double damping) noexcept { results_.fit.give_damping(damping); }
 
+  /// Lends memory for the polynomials of parts of the ranges (`TrialSettings::pieces`): with it
+  /// trials of devices with many switches take microseconds, without it each may be a refinement.
+  /// After a start, until the evaluation is done.
+  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept;
+
   /// The number of draws for the covariance of the fit.
   static constexpr std::uint32_t kFitDraws = 10000;
   /// The fraction of the peak of k within which it has settled.
@@ -132,13 +141,33 @@ class Evaluation {
   void begin_cut_range() noexcept;
   void step_cut_range() noexcept;
   void begin_trials() noexcept;
+  void note_root(double energy_v2s) noexcept;
   void step_prediction() noexcept;
   void step_adaptive() noexcept;
   void begin_monte_carlo(std::uint32_t trials) noexcept;
   void step_monte_carlo() noexcept;
   void step_guard() noexcept;
+  bool begin_next_figure() noexcept;
+  void begin_figure(Stage stage) noexcept;
+  void begin_uncertainty() noexcept;
+  void step_figure() noexcept;
+  void step_figure_search() noexcept;
+  void step_figure_bound() noexcept;
+  void step_figure_prediction() noexcept;
+  void step_figure_trials() noexcept;
+  void end_figure_energy(bool is_proven) noexcept;
+  void begin_figure_trials() noexcept;
+  void refuse_figure(Status status) noexcept;
+  void refuse_uncertainty(Status status) noexcept;
+  double progress_of_figure() const noexcept;
+  double progress_of_trials() const noexcept;
+  Status set_figure_model(ModalModel& model) const noexcept;
+  FigureResults& figure() noexcept;
+  EnergyUncertainty& uncertainty() noexcept;
+  TrialSettings trial_settings(Distribution distribution) const noexcept;
   void step_trend() noexcept;
   void add_trend_point(double energy_v2s) noexcept;
+  bool leaves_out(Status of_search) noexcept;
   void end_trend() noexcept;
 
   EvaluationResults& results_;

@@ -62,8 +62,64 @@ struct GuardResults {
   double largest_excess = 0.0;  ///< As `EnergyGuard::largest_excess()`.
 };
 
+/// What is known of the uncertainty of a largest energy: JCGM 101, jointly normal with the fit's
+/// covariance, or independent normals where parameters were given.
+struct EnergyUncertainty {
+  bool is_done = false;
+  Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, there are no numbers.
+  std::uint32_t trials = 0;
+  std::uint32_t redraws = 0;  ///< Draws that were no device and were made again.
+  double mean_v2s = 0.0;
+  double u_v2s = 0.0;
+  CoverageInterval symmetric;  ///< In V^2 s.
+  CoverageInterval shortest;
+  double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a) over the trials.
+
+  bool exists() const noexcept { return is_done && status == Status::kOk; }
+};
+
+/// A largest energy beside that of the criterion: an in-band error.
+///
+/// Its uncertainty is for a gain of the filter that follows S: S stays at its estimate and f0 and
+/// beta are drawn. The uncertainty of S itself is a common error of gain and is shown beside it.
+/// With GainMode::kFixed the gain is the number given, and S is drawn too.
+struct FigureResults {
+  /// How many switching times are kept: 64 with the default capacities.
+  static constexpr std::size_t kTimes = kMaxSwitches / 4;
+
+  bool is_done = false;         ///< Looked for, with its bound.
+  Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, why there is none.
+  bool has_bound = false;
+  std::uint16_t switches = 0;    ///< Of the signal; the first kTimes are kept.
+  double energy_v2s = 0.0;       ///< With a delay that of the continued filter.
+  double rounding_v2s = 0.0;     ///< What rounding may have changed of it.
+  double bound_v2s = 0.0;        ///< With `has_bound`: of any signal, for the true delay.
+  double delay_s = 0.0;          ///< Taken out of the reference.
+  double epsilon_percent = 0.0;  ///< By which the true delay may change the rms, in % of S a.
+  EnergyUncertainty uncertainty;
+  double times_kept_s[kTimes] = {};
+
+  bool exists() const noexcept { return is_done && status == Status::kOk; }
+  Span<const double> times_s() const noexcept {
+    return Span<const double>(times_kept_s, switches < kTimes ? switches : kTimes);
+  }
+  /// Forgets all, in place.
+  void clear() noexcept;
+};
+
+/// The largest energy of an ideal sensor, K = S at every frequency, for the same criterion: what a
+/// largest energy is to be compared with.
+struct IdealResults {
+  bool is_done = false;
+  Status status = Status::kOk;
+  /// The larger of what was found and of what ever faster switching tends to.
+  double energy_v2s = 0.0;
+
+  bool exists() const noexcept { return is_done && status == Status::kOk; }
+};
+
 /// The results of an evaluation, while it runs and afterwards, each part complete once its flag is
-/// set. 11 KiB, all zero before the first one.
+/// set. 12 KiB, all zero before the first one.
 ///
 /// They know what they were made from: `holds()` and `is_of()` are the only truth on what may be
 /// shown as the answer for a device and settings.
@@ -90,6 +146,9 @@ struct EvaluationResults {
   bool has_trend = false;
   std::size_t trace_count = 0;
   std::size_t trend_count = 0;
+  std::uint32_t trend_looked_at = 0;  ///< Times of the trend, from the first.
+  /// A bit for each time of the trend that needs more cells or switches than there is room for.
+  std::uint32_t trend_left_out = 0;
   Failure failure;
   Device device;
   double limit_mps2 = 0.0;  ///< a.
@@ -107,7 +166,12 @@ struct EvaluationResults {
   WlspDrawsResult fit_draws;                     ///< With `has_fit_draws`.
   TrialResults trials;                           ///< With `has_monte_carlo`.
   TrendPoint trend_table[kMaxTrendPoints] = {};  ///< `trend_points()` is the part in use.
-  double trace_v2s[kTraceLength] = {};           ///< `trace()` is the part in use.
+  EnergyUncertainty uncertainty;                 ///< Of `energy_v2s()`.
+  IdealResults ideal;
+  double given_covariance[3][3] = {};   ///< Source::kModel only.
+  FigureResults band;                   ///< The in-band error without a delay of the reference.
+  FigureResults matched;                ///< With the sensor's delay, or the one given, taken out.
+  double trace_v2s[kTraceLength] = {};  ///< `trace()` is the part in use.
   MaximumEnergy maximum;  ///< Its energy is for a = 1; `energy_v2s()` is the one to show.
   ModalModel model;       ///< At the estimate.
   Wlsp fit;               ///< Source::kPoints only.
@@ -117,6 +181,7 @@ struct EvaluationResults {
   /// Forgets these parts of them.
   void drop_trials() noexcept;
   void drop_trend() noexcept;
+  void drop_uncertainties() noexcept;
 
   bool done() const noexcept { return stage == Stage::kDone || stage == Stage::kFailed; }
   Status status() const noexcept { return failure.status; }
@@ -128,6 +193,10 @@ struct EvaluationResults {
   }
   /// @returns Whether there is an uncertainty for trials, which need a range for each parameter.
   bool has_uncertainty() const noexcept;
+  /// @returns Whether both in-band errors and the ideal sensor were looked for.
+  bool has_figures() const noexcept { return ideal.is_done && band.is_done && matched.is_done; }
+  /// @returns Whether nothing can be added to the uncertainties.
+  bool has_uncertainties() const noexcept;
 
   /// @returns Whether everything that this goal asks for is there and would come out the same with
   /// these settings. For kMonteCarlo and kTrend false where there are no trials and no times; for
@@ -152,6 +221,8 @@ struct EvaluationResults {
   double energy_v2s() const noexcept { return a2() * maximum.energy; }
   /// @returns xi = E/(a^2 T), paper equation (7), in (V/(m/s^2))^2.
   double xi() const noexcept { return maximum.energy / settings.duration_s; }
+  /// @returns 100 sqrt(E/T)/(S a) of an energy, S being the estimate; not a number below 0.
+  double percent_of(double energy_v2s) const noexcept;
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
   double rms_error_v() const noexcept;
   /// @returns The output y(t) for the signal found with its limit a, in V.
@@ -174,6 +245,8 @@ struct EvaluationResults {
                                            false,
                                            0.0,
                                            Criterion::kIntegralSquareError,
+                                           DelayMode::kNone,
+                                           0.0,
                                            {},
                                            0.0,
                                            0,

@@ -47,24 +47,47 @@ class EvaluationWorkspace {
   struct CutPart : InPlace {
     CutRange range;
   };
+  struct FigurePart : InPlace {
+    ModalModel model;
+    EnergyBound bound;
+  };
+  // Lies in the grid's memory while trials start from it.
+  struct FigureModel : InPlace {
+    ModalModel model;
+  };
+  // Mean and squares of a quantity about its first value.
+  struct Scatter {
+    double origin = 0.0;
+    double mean = 0.0;
+    double squares = 0.0;
+    std::uint32_t count = 0;
+  };
   struct TrialPart : InPlace {
     EnergyTrials trials;
     MonteCarlo monte_carlo;
     AdaptiveTrials adaptive;
+    Scatter root;  // Of sqrt(E), while the first pass of an uncertainty runs.
   };
   union Part {
     constexpr Part() noexcept : trial() {}
     ModelPart model;
     BoundPart bound;
     CutPart cut;
+    FigurePart figure;
     TrialPart trial;
   };
 
+  enum class FigurePhase : std::uint8_t { kSearch, kBound, kPrediction, kTrials, kEnd };
+  static_assert(!kHasDefaultCapacities ||
+                sizeof(FigureModel) <= sizeof(double) * packed_size(kPhiCells));
+
   Span<double> store_;
+  Span<TrialPiece> pieces_;
   double progress_ = 0.0;
   std::uint32_t stored_ = 0;  // Trials 0 to stored_ - 1 are in the store.
   std::uint32_t trials_ = 0;
   Goal goal_ = Goal::kModel;
+  FigurePhase figure_phase_ = FigurePhase::kSearch;  // Of the stages from kIdeal to kUncertainty.
   bool trial_runs_ = false;
   bool trend_search_runs_ = false;
   EnergyGuard guard_;
@@ -76,6 +99,6 @@ class EvaluationWorkspace {
 
 static_assert(std::is_trivially_copyable_v<EvaluationWorkspace>);
 static_assert(!kHasDefaultCapacities ||
-              sizeof(EvaluationResults) + sizeof(EvaluationWorkspace) <= 96 * 1024);
+              sizeof(EvaluationResults) + sizeof(EvaluationWorkspace) <= 98 * 1024);
 
 }  // namespace emax::app

@@ -41,12 +41,15 @@ inline constexpr double kStandardGravity_mps2 = 9.80665;
 enum class ReportSection : std::uint8_t {
   kTitle,
   kLabels,
+  kFigures,
   kInput,
   kFault,
   kMeasurement,
   kFit,
   kErrorSystem,
   kEnergy,
+  kInBand,
+  kUncertainty,
   kMonteCarlo,
   kTrend,
 };

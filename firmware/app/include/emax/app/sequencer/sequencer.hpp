@@ -164,6 +164,8 @@ class Sequencer {
   /// Lends memory for the values of the trials, as `Evaluation::lend_trial_store()`, to every
   /// evaluation that begins from now on.
   void lend_trial_store(Span<double> store) noexcept { trial_store_ = store; }
+  /// The same for `Evaluation::lend_trial_pieces()`.
+  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { trial_pieces_ = pieces; }
 
   /// Memory for somebody else's work while nothing runs; anything may be in it.
   template <typename Work>
@@ -197,6 +199,7 @@ class Sequencer {
 
   hal::AnalogStream* stream_ = nullptr;  // Of the sweep that runs.
   Span<double> trial_store_;
+  Span<TrialPiece> trial_pieces_;
   Refusal failure_;
   Job job_ = Job::kNone;
   Goal goal_ = Goal::kModel;

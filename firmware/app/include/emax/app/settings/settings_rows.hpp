@@ -12,7 +12,8 @@ namespace emax::app {
 
 inline constexpr const char* kGainWords[] = {"AUTO", "TRACk"};
 inline constexpr const char* kLimitWords[] = {"AUTO"};
-inline constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence"};
+inline constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence", "BAND"};
+inline constexpr const char* kDelayWords[] = {"NONE", "AUTO"};
 inline constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
 inline constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
 inline constexpr const char* kGeneratorWords[] = {"WH2006", "WH1982"};
@@ -60,11 +61,21 @@ inline constexpr SettingRow kSettingRows[] = {
                     "The signal stays within +-a; AUTO: the number of S", "M/S2"),
     setting("criterion", EMAX_SETTING(Settings, criterion), SettingGroup::kSignal, Concern::kEnergy)
         .one_of(kCriterionWords)
-        .as_option({nullptr, "ise|difference", "ise or difference",
+        .as_option({nullptr, "ise|difference|band", "ise, difference or band",
                     "ise: energy of the error, y = ya - yf;\n"
-                    "difference: energy of ya minus that of yf"})
-        .as_command("CALCulate:ENERgy:CRITerion", "ISE|DIFFerence",
-                    "Energy of the error, or difference of the energies"),
+                    "difference: energy of ya minus that of yf;\n"
+                    "band: energy of the error within the filter's band"})
+        .as_command("CALCulate:ENERgy:CRITerion", "ISE|DIFFerence|BAND",
+                    "Energy of the error, difference of the energies, or error in band"),
+    setting("reference delay", EMAX_SETTING(Settings, delay_s), offsetof(Settings, delay_mode),
+            SettingGroup::kSignal, Concern::kEnergy)
+        .within(0.0, kMaxDuration_s, "'none', 'auto', or a number of seconds, 0 or more")
+        .or_one_of(kDelayWords, static_cast<std::uint8_t>(DelayMode::kGiven))
+        .as_option({"reference-delay", "none|auto|NUMBER", "none, auto or a number of seconds",
+                    "delay that the in-band error allows the sensor:\n"
+                    "auto is its own at low frequency, beta/(pi f0)"})
+        .as_command("CALCulate:ENERgy:DELay", "<s>|NONE|AUTO",
+                    "Delay taken out of the error in band; AUTO: that of the sensor", "S"),
     setting("method", EMAX_SETTING(Settings, method), SettingGroup::kSignal, Concern::kEnergy)
         .one_of(kMethodWords)
         .as_option({nullptr, "best|paper", "best or paper",

@@ -1,0 +1,290 @@
+// The figures beside the maximum energy: the ideal sensor, the in-band errors, and the uncertainty
+// of each.
+#include "emax/app/evaluate/evaluation.hpp"
+#include "emax/app/evaluate/evaluation_workspace.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/energy/known_energy.hpp"
+
+#include "evaluation_checks.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+/// Whether something of a figure is still to be done.
+bool lacks(const FigureResults& figure, bool with_uncertainty) noexcept {
+  return !figure.is_done || (with_uncertainty && figure.exists() && !figure.uncertainty.is_done);
+}
+
+SearchSettings figure_search(const Settings& settings) noexcept {
+  return {Method::kBest, settings.duration_s, 0.0, 0};
+}
+
+}  // namespace
+
+FigureResults& Evaluation::figure() noexcept {
+  return results_.stage == Stage::kMatched ? results_.matched : results_.band;
+}
+
+EnergyUncertainty& Evaluation::uncertainty() noexcept {
+  return results_.stage == Stage::kUncertainty ? results_.uncertainty : figure().uncertainty;
+}
+
+/// @returns Whether one has begun; false if all are done.
+bool Evaluation::begin_next_figure() noexcept {
+  const bool with_uncertainty = work_.goal_ == Goal::kReport && results_.has_uncertainty();
+  if (!results_.ideal.is_done) {
+    begin_figure(Stage::kIdeal);
+  } else if (lacks(results_.band, with_uncertainty)) {
+    begin_figure(Stage::kBand);
+  } else if (lacks(results_.matched, with_uncertainty)) {
+    begin_figure(Stage::kMatched);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Status Evaluation::set_figure_model(ModalModel& model) const noexcept {
+  const Accelerometer& device = results_.device.estimate;
+  const Settings& settings = results_.settings;
+  const ReferenceFilter filter = reference_filter(results_);
+  if (results_.stage == Stage::kIdeal) {
+    return model.set_ideal(device.sensitivity, filter, settings.criterion);
+  }
+  ReferenceDelay delay;
+  if (results_.stage == Stage::kMatched) {
+    const bool is_given = settings.delay_mode == DelayMode::kGiven;
+    delay = {is_given ? DelayMode::kGiven : DelayMode::kOfSensor, settings.delay_s};
+  }
+  return model.set(device, filter, {Criterion::kInBandError, delay});
+}
+
+// Whatever stands in the way of a figure is written down with it; the evaluation goes on.
+void Evaluation::begin_figure(Stage stage) noexcept {
+  using Phase = EvaluationWorkspace::FigurePhase;
+  results_.stage = stage;
+  work_.figure_phase_ = Phase::kSearch;
+  if (stage == Stage::kIdeal && results_.settings.criterion == Criterion::kInBandError) {
+    results_.ideal = {true, Status::kOk, 0.0};  // An ideal sensor has no error in band.
+    work_.figure_phase_ = Phase::kEnd;
+    return;
+  }
+  auto* const part = new (&work_.part_.figure) EvaluationWorkspace::FigurePart;
+  Status status = set_figure_model(part->model);
+  if (status == Status::kOk) {
+    status = work_.search_.start(part->model, figure_search(results_.settings));
+  }
+  if (status != Status::kOk) {
+    refuse_figure(status);
+  }
+}
+
+void Evaluation::refuse_figure(Status status) noexcept {
+  if (results_.stage == Stage::kIdeal) {
+    results_.ideal = {true, status, 0.0};
+  } else {
+    figure().is_done = true;
+    figure().status = status;
+  }
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+}
+
+void Evaluation::step_figure() noexcept {
+  using Phase = EvaluationWorkspace::FigurePhase;
+  switch (work_.figure_phase_) {
+    case Phase::kSearch:
+      step_figure_search();
+      return;
+    case Phase::kBound:
+      step_figure_bound();
+      return;
+    case Phase::kPrediction:
+      step_figure_prediction();
+      return;
+    case Phase::kTrials:
+      step_figure_trials();
+      return;
+    case Phase::kEnd:
+      go_on();
+      return;
+  }
+}
+
+double Evaluation::progress_of_figure() const noexcept {
+  using Phase = EvaluationWorkspace::FigurePhase;
+  switch (work_.figure_phase_) {
+    case Phase::kSearch:
+      return work_.search_.progress();
+    case Phase::kBound:
+      return work_.part_.figure.bound.progress();
+    case Phase::kPrediction:
+      return work_.part_.trial.trials.progress();
+    case Phase::kTrials:
+      return progress_of_trials();
+    case Phase::kEnd:
+      break;
+  }
+  return 1.0;
+}
+
+void Evaluation::step_figure_search() noexcept {
+  EvaluationWorkspace::FigurePart& part = work_.part_.figure;
+  const Status status = work_.search_.step(part.model, work_.grid_);
+  if (status != Status::kOk) {
+    refuse_figure(status);
+    return;
+  }
+  if (!work_.search_.done()) {
+    return;
+  }
+  const double duration_s = results_.settings.duration_s;
+  const MaximumEnergy& found = work_.search_.result();
+  if (results_.stage == Stage::kIdeal) {
+    const double limit = fast_switching_limit(part.model, duration_s);
+    results_.ideal = {true, Status::kOk,
+                      results_.a2() * (found.energy > limit ? found.energy : limit)};
+    work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+    return;
+  }
+  FigureResults& figure = this->figure();
+  if (figure.is_done) {  // Searched again for the trials, which need the signal.
+    begin_figure_trials();
+    return;
+  }
+  figure.energy_v2s = results_.a2() * found.energy;
+  figure.rounding_v2s = results_.a2() * found.rounding;
+  figure.delay_s = part.model.delay_s();
+  figure.epsilon_percent =
+      kPercent * delay_tolerance(part.model) / results_.device.estimate.sensitivity;
+  figure.switches = static_cast<std::uint16_t>(found.signal.count());
+  for (std::size_t i = 0; i < figure.times_s().size(); ++i) {
+    figure.times_kept_s[i] = found.signal.times_s()[i];
+  }
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kBound;
+  if (part.bound.start(part.model, duration_s, work_.grid_) != Status::kOk) {
+    end_figure_energy(false);
+  }
+}
+
+void Evaluation::step_figure_bound() noexcept {
+  EvaluationWorkspace::FigurePart& part = work_.part_.figure;
+  const Status status = part.bound.step(part.model, work_.grid_);
+  if (status != Status::kOk || part.bound.done()) {
+    end_figure_energy(status == Status::kOk);
+  }
+}
+
+void Evaluation::end_figure_energy(bool is_proven) noexcept {
+  FigureResults& figure = this->figure();
+  figure.has_bound = is_proven;
+  figure.bound_v2s = is_proven ? results_.a2() * work_.part_.figure.bound.bound() : 0.0;
+  figure.is_done = true;
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+  if (work_.goal_ == Goal::kReport && results_.has_uncertainty()) {
+    begin_figure_trials();
+  }
+}
+
+// The search's result is still there; the model's place is that of the trials.
+void Evaluation::begin_figure_trials() noexcept {
+  TrialSettings settings = trial_settings(Distribution::kNormal);
+  settings.search = figure_search(results_.settings);
+  settings.gain_follows = false;
+  settings.holds_sensitivity = results_.settings.gain_mode != GainMode::kFixed;
+  work_.grid_.share_nothing();
+  auto* const place = new (work_.grid_.numbers().data()) EvaluationWorkspace::FigureModel;
+  (void)set_figure_model(place->model);  // As it was for the search.
+  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
+  work_.stored_ = 0;
+  const Status status = part->trials.start(place->model, work_.search_.result(), settings);
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kPrediction;
+  if (status != Status::kOk) {
+    refuse_uncertainty(status);
+  }
+}
+
+void Evaluation::begin_uncertainty() noexcept {
+  results_.stage = Stage::kUncertainty;
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kPrediction;
+  auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
+  work_.stored_ = 0;
+  const Status status =
+      part->trials.start(results_.model, results_.maximum, trial_settings(Distribution::kNormal));
+  if (status != Status::kOk) {
+    refuse_uncertainty(status);
+  }
+}
+
+void Evaluation::refuse_uncertainty(Status status) noexcept {
+  uncertainty() = {};
+  uncertainty().is_done = true;
+  uncertainty().status = status;
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+}
+
+void Evaluation::step_figure_prediction() noexcept {
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  if (!part.trials.ready()) {
+    part.trials.prepare(work_.search_, work_.grid_);
+    return;
+  }
+  const Settings& settings = results_.settings;
+  work_.grid_.share_with_store();
+  work_.trials_ = settings.adaptive ? results_.adaptive.trials : settings.trials;
+  const Status status =
+      part.monte_carlo.start(work_.trials_, settings.probability, work_.grid_.store());
+  if (status != Status::kOk) {
+    refuse_uncertainty(status);
+    return;
+  }
+  work_.progress_ = 0.0;
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kTrials;
+}
+
+void Evaluation::step_figure_trials() noexcept {
+  run_slice();
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  if (!part.monte_carlo.done()) {
+    return;
+  }
+  const MonteCarloResult result = part.monte_carlo.result();
+  if (result.status != Status::kOk) {
+    refuse_uncertainty(result.status);
+    return;
+  }
+  EnergyUncertainty& known = uncertainty();
+  known.is_done = true;
+  known.status = Status::kOk;
+  known.trials = result.trials;
+  known.redraws = part.trials.redraws();
+  known.mean_v2s = result.mean;
+  known.u_v2s = result.u;
+  known.symmetric = result.symmetric;
+  known.shortest = result.shortest;
+  // percent_of() of an energy is as sqrt(E) is.
+  const double variance = part.root.squares / static_cast<double>(part.root.count - 1);
+  known.u_percent = results_.percent_of(1.0) * sqrt(variance);
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+}
+
+/// Takes sqrt(E) of a trial while the first pass runs.
+void Evaluation::note_root(double energy_v2s) noexcept {
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  EvaluationWorkspace::Scatter& root = part.root;
+  if (results_.stage < Stage::kBand || part.monte_carlo.pass() != 1) {
+    return;
+  }
+  const double value = sqrt(energy_v2s);
+  if (root.count == 0) {
+    root.origin = value;
+  }
+  ++root.count;
+  const double off = value - root.origin;
+  const double before = off - root.mean;
+  root.mean += before / static_cast<double>(root.count);
+  root.squares += before * (off - root.mean);
+}
+
+}  // namespace emax::app

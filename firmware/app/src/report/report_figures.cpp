@@ -1,0 +1,243 @@
+// Figures in percent of S a, with as many digits as their uncertainty carries.
+#include "report_figures.hpp"
+
+#include "emax/base/elementary.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kMilli = 1e3;
+constexpr double kMicro = 1e6;
+constexpr double kPercent = 100.0;
+constexpr std::size_t kTimesPerLine = 6;
+constexpr std::size_t kNameWidth = 44;
+constexpr std::size_t kNumberWidth = 14;
+constexpr int kMostDecimals = 12;
+
+/// As many decimals as give `value` this many significant digits.
+int decimals_of(double value, int digits) noexcept {
+  double least = 1.0;
+  for (int i = 1; i < digits; ++i) {
+    least *= 10.0;
+  }
+  int decimals = 0;
+  for (double scaled = value; scaled < 0.995 * least && decimals < kMostDecimals; scaled *= 10.0) {
+    ++decimals;
+  }
+  return decimals;
+}
+
+/// A number that is no less in so many decimals.
+double rounded_up(double value, int decimals) noexcept {
+  double scale = 1.0;
+  for (int i = 0; i < decimals; ++i) {
+    scale *= 10.0;
+  }
+  return -floor(-value * scale) / scale;
+}
+
+struct Row {
+  const char* name;
+  double percent;
+  double expanded;  ///< U in percent; 0 if there is none.
+  bool has_bound;
+  double bound_percent;
+};
+
+void write_row(const Row& row, ReportWriter& out) noexcept {
+  constexpr int kDigitsOfU = 2;
+  constexpr int kDigitsAlone = 4;
+  const bool has_u = row.expanded > 0.0;
+  const int decimals =
+      has_u ? decimals_of(row.expanded, kDigitsOfU) : decimals_of(row.percent, kDigitsAlone);
+  out.part(ReportPart::kLine);
+  out.cell(0).text("  ").left(kNameWidth).text(row.name);
+  out.cell(kNumberWidth).fixed(row.percent, decimals);
+  if (has_u) {
+    out.cell(kNumberWidth).fixed(rounded_up(row.expanded, decimals), decimals);
+  } else {
+    out.cell(kNumberWidth).text("-");
+  }
+  if (row.has_bound) {
+    const int of_bound = decimals_of(row.bound_percent, kDigitsAlone);
+    out.cell(kNumberWidth).fixed(rounded_up(row.bound_percent, of_bound), of_bound).line();
+  } else {
+    out.cell(kNumberWidth).text("-").line();
+  }
+}
+
+Row row_of(const char* name, const EvaluationResults& results,
+           const FigureResults& figure) noexcept {
+  const EnergyUncertainty& known = figure.uncertainty;
+  return {name, results.percent_of(figure.energy_v2s),
+          known.exists() ? kCoverageFactor * known.u_percent : 0.0, figure.has_bound,
+          results.percent_of(figure.bound_v2s)};
+}
+
+void write_papers_rows(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double energy = results.energy_v2s();
+  if (results.settings.criterion == Criterion::kInBandError || energy < 0.0) {
+    return;
+  }
+  const EnergyUncertainty& known = results.uncertainty;
+  const bool has_u = known.exists() && is_finite(known.u_percent);
+  write_row({"The paper's figure, sqrt(E/T)", results.percent_of(energy),
+             has_u ? kCoverageFactor * known.u_percent : 0.0, results.has_bound,
+             results.percent_of(results.bound_v2s)},
+            out);
+  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
+    write_row({"The same of an ideal sensor, K = S", results.percent_of(results.ideal.energy_v2s),
+               0.0, false, 0.0},
+              out);
+  }
+}
+
+void write_refusal(const char* name, Status status, ReportWriter& out) noexcept {
+  out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(". ");
+  out.text(explain(status)).line();
+}
+
+void write_interval(const char* name, const CoverageInterval& interval, double probability,
+                    ReportWriter& out) noexcept {
+  constexpr int kDigits = 7;
+  out.label(name).scientific(interval.low, kDigits).text(" to ");
+  out.scientific(interval.high, kDigits).text(" V^2 s (");
+  out.general(kPercent * probability, 6).text(" %)").line();
+}
+
+void write_figure(const EvaluationResults& results, const FigureResults& figure,
+                  ReportWriter& out) noexcept {
+  const double duration_s = results.settings.duration_s;
+  out.label("E").scientific(figure.energy_v2s, 8).text(" V^2 s").line();
+  out.label("rms error sqrt(E/T)").general(sqrt(figure.energy_v2s / duration_s), 5);
+  out.text(" V = ").general(results.percent_of(figure.energy_v2s), 4).text(" % of S a").line();
+  write_switching_times(figure.switches, figure.times_s(), out);
+  out.label("Upper bound");
+  if (figure.has_bound) {
+    out.scientific(figure.bound_v2s, 8).text(" V^2 s: proven, no signal within +-a has more");
+    out.line();
+  } else {
+    out.text("none passed its check for this device and time").line();
+  }
+  const EnergyUncertainty& known = figure.uncertainty;
+  if (known.exists()) {
+    out.label("u(E); U (k = 2)").scientific(known.u_v2s, 2).text("; ");
+    out.scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
+    write_interval("Symmetric interval", known.symmetric, results.settings.probability, out);
+    write_interval("Shortest interval", known.shortest, results.settings.probability, out);
+  }
+}
+
+}  // namespace
+
+void write_switching_times(std::size_t switches, Span<const double> times_s,
+                           ReportWriter& out) noexcept {
+  out.label("Signal").text("+a from the start, ").integer(switches);
+  out.text(switches == 1 ? " switch" : " switches");
+  if (times_s.size() < switches) {
+    out.text(", the first ").integer(times_s.size());
+  }
+  out.text(times_s.empty() ? "" : ", at (ms)");
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    if (i % kTimesPerLine == 0) {
+      out.line();
+      out.indent();
+    }
+    out.right(11).fixed(kMilli * times_s[i], 6);
+  }
+  out.line();
+}
+
+void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept {
+  out.heading(ReportSection::kFigures,
+              "THE FIGURES (worst rms error of any signal within +-a, in percent of S a)");
+  out.part(ReportPart::kTable);
+  out.part(ReportPart::kHead);
+  out.cell(0).text("  ").left(kNameWidth).text("error");
+  out.cell(kNumberWidth).text("found");
+  out.cell(kNumberWidth).text("U (k = 2)");
+  out.cell(kNumberWidth).text("none exceeds").line();
+  if (results.matched.exists()) {
+    write_row(row_of("In band, constant delay taken out", results, results.matched), out);
+  }
+  if (results.band.exists()) {
+    write_row(row_of("In band, with its delay", results, results.band), out);
+  }
+  write_papers_rows(results, out);
+  if (!results.band.exists()) {
+    write_refusal("in band", results.band.status, out);
+  } else if (!results.matched.exists()) {
+    write_refusal("in band with the delay taken out", results.matched.status, out);
+  }
+  out.part(ReportPart::kText)
+      .text(
+          "  In band: what the sensor does wrong within the filter's band; 0 for an ideal sensor.\n"
+          "  The paper's figure also holds the filter's delay and what the filter keeps out: "
+          "compare\n"
+          "  it with that of an ideal sensor.\n");
+}
+
+void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept {
+  if (!results.band.exists()) {
+    return;
+  }
+  out.heading(ReportSection::kInBand, "IN-BAND ERROR (energy of the filter on sensor minus G x)");
+  write_figure(results, results.band, out);
+  if (results.matched.exists()) {
+    const FigureResults& matched = results.matched;
+    out.line();
+    out.label("Delay taken out").general(kMicro * matched.delay_s, 5).text(" us");
+    const bool is_given = results.settings.delay_mode == DelayMode::kGiven;
+    out.text(is_given ? ", as given" : ", beta/(pi f0), the sensor's at low frequency").line();
+    out.label("It leaves open").general(matched.epsilon_percent, 2).text(" % of S a").line();
+    write_figure(results, matched, out);
+  }
+  if (results.band.uncertainty.exists()) {
+    const bool is_fixed = results.settings.gain_mode == GainMode::kFixed;
+    out.part(ReportPart::kText);
+    out.text(
+        is_fixed
+            ? "  Uncertainties by JCGM 101, jointly normal S, f0 and beta, at the gain given.\n"
+            : "  Uncertainties by JCGM 101, f0 and beta jointly normal, the gain following S: "
+              "the\n  uncertainty of S is a common error of gain, u(S)/S = ");
+    if (!is_fixed) {
+      const Device& device = results.device;
+      out.general(kPercent * device.u.sensitivity / device.estimate.sensitivity, 3).text(" %.\n");
+    }
+  }
+}
+
+void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const EnergyUncertainty& known = results.uncertainty;
+  const double probability = results.settings.probability;
+  out.heading(ReportSection::kUncertainty,
+              results.source == Source::kPoints
+                  ? "UNCERTAINTY OF E (JCGM 101: S, f0 and beta jointly normal, as fitted)"
+                  : "UNCERTAINTY OF E (JCGM 101: S, f0 and beta normal, with the u given)");
+  if (!results.has_uncertainty()) {
+    out.part(ReportPart::kText).text("  None: all uncertainties are zero.\n");
+    return;
+  }
+  if (!known.exists()) {
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: draws of the parameters leave what a device may be 65 times in a row;\n")
+        .text("  E has no uncertainty. Give smaller uncertainties.\n");
+    return;
+  }
+  out.label("Mean of E").scientific(known.mean_v2s, 8).text(" V^2 s over ");
+  out.integer(known.trials).text(" trials").line();
+  out.label("u(E)").scientific(known.u_v2s, 2).text(" V^2 s").line();
+  out.label("U (k = 2)").scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
+  write_interval("Symmetric interval", known.symmetric, probability, out);
+  write_interval("Shortest interval", known.shortest, probability, out);
+  constexpr std::uint32_t kOnePercent = 100;
+  if (known.redraws > 0) {
+    out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();
+  }
+  if (known.redraws > known.trials / kOnePercent) {
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: that is more than 1 %; E is not normal. Give smaller uncertainties.\n");
+  }
+}
+
+}  // namespace emax::app

@@ -1,0 +1,26 @@
+// The parts of the report that lead: the figures side by side, the in-band errors, and the
+// uncertainty of E.
+#pragma once
+
+#include "emax/app/evaluate/evaluation_results.hpp"
+
+#include "report_parts.hpp"
+
+namespace emax::app {
+
+/// The figures that tell sensors apart, in percent of S a.
+void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept;
+
+/// The in-band errors, in V^2 s and with their signals.
+void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept;
+
+/// What JCGM 101 gives for the energy of the criterion.
+void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noexcept;
+
+/// "+a from the start, n switches, at (ms)" and the times.
+///
+/// @param[in] switches The number of them all; `times_s` may hold fewer.
+void write_switching_times(std::size_t switches, Span<const double> times_s,
+                           ReportWriter& out) noexcept;
+
+}  // namespace emax::app

@@ -1,0 +1,112 @@
+// When a warning is due, and its line.
+#include "report_warnings.hpp"
+
+#include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr std::uint32_t kOnePercent = 100;
+
+bool fit_warns(const EvaluationResults& results) noexcept {
+  const WlspFit& fit = results.fit.result();
+  return results.source == Source::kPoints &&
+         fit.chi2 / static_cast<double>(fit.dof) > reduced_chi_square_limit(fit.dof);
+}
+
+bool has_few_trials(const EvaluationResults& results) noexcept {
+  const std::uint32_t rule = minimum_trials(results.settings.probability);
+  return results.has_monte_carlo && !results.settings.adaptive &&
+         (rule == 0 || results.trials.result.trials < rule);
+}
+
+bool is_short(const EvaluationResults& results) noexcept {
+  return results.settings.duration_s < kMuchShorter * results.settling_time.time_s;
+}
+
+bool has_flags(const ReportContext& context) noexcept {
+  if (context.measurement == nullptr) {
+    return false;
+  }
+  bool any = false;
+  for (const SweepPoint& point : context.measurement->sweep.points()) {
+    any = any || point.flagged;
+  }
+  return any;
+}
+
+}  // namespace
+
+bool holds(Warning warning, const EvaluationResults& results,
+           const ReportContext& context) noexcept {
+  const EnergyUncertainty& known = results.uncertainty;
+  switch (warning) {
+    case Warning::kFit:
+      return fit_warns(results);
+    case Warning::kShortTime:
+      return is_short(results);
+    case Warning::kFewTrials:
+      return has_few_trials(results);
+    case Warning::kNotStable:
+      return results.has_monte_carlo && results.settings.adaptive && !results.adaptive.stabilised;
+    case Warning::kGuard:
+      return results.has_monte_carlo && results.guard.disagreements > 0;
+    case Warning::kCrowded:
+      return results.has_monte_carlo && results.trials.branches.is_crowded;
+    case Warning::kRedrawn:
+      return known.exists() && known.redraws > known.trials / kOnePercent;
+    case Warning::kNoUncertainty:
+      return known.is_done && !known.exists();
+    case Warning::kMeasurement:
+      return has_flags(context);
+  }
+  return false;
+}
+
+const char* about(Warning warning) noexcept {
+  switch (warning) {
+    case Warning::kFit:
+      return "fit";
+    case Warning::kShortTime:
+      return "energy";
+    case Warning::kFewTrials:
+    case Warning::kNotStable:
+    case Warning::kGuard:
+    case Warning::kCrowded:
+      return "monte_carlo";
+    case Warning::kRedrawn:
+    case Warning::kNoUncertainty:
+      return "uncertainty";
+    case Warning::kMeasurement:
+      break;
+  }
+  return "measurement";
+}
+
+const char* words_of(Warning warning) noexcept {
+  switch (warning) {
+    case Warning::kFit:
+      return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
+             "order over these frequencies, or the stated uncertainties are too small";
+    case Warning::kShortTime:
+      return "T is much shorter than the settling time; give at least the settling time";
+    case Warning::kFewTrials:
+      return "fewer trials than rule (3), 1e4/(1 - p), asks for";
+    case Warning::kNotStable:
+      return "the adaptive procedure was not stable when its greatest number of blocks was reached";
+    case Warning::kGuard:
+      return "a full search found more energy than its trial: maximum and intervals are too low";
+    case Warning::kCrowded:
+      return "more signals than the trials have room for may be the worst within the ranges";
+    case Warning::kRedrawn:
+      return "more than 1 % of the draws were no device and were made again: E is not normal there";
+    case Warning::kNoUncertainty:
+      return "the uncertainties leave what a device may be, so E has none; give smaller ones";
+    case Warning::kMeasurement:
+      break;
+  }
+  return "points of the sweep are flagged";
+}
+
+}  // namespace emax::app

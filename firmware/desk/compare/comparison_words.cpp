@@ -1,0 +1,385 @@
+// What is said of a comparison.
+#include "desk/compare/comparison_words.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/base/elementary.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/compare/figure_text.hpp"
+#include "desk/compare/name_lines.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+using app::TextWriter;
+
+constexpr double kPercent = 100.0;
+constexpr const char* kFitMark = "fit";
+constexpr const char* kSimulatedMark = "sim";
+
+template <typename Write>
+std::string text_by(const Write& write) {
+  StringSink sink;
+  TextWriter out(sink);
+  write(out);
+  return sink.text();
+}
+
+template <typename Has>
+std::vector<const Result*> those_that(const Comparison& comparison, const Has& has) {
+  std::vector<const Result*> found;
+  for (const Result& result : comparison.results) {
+    if (has(result)) {
+      found.push_back(&result);
+    }
+  }
+  return found;
+}
+
+std::vector<const Result*> simulated_of(const Comparison& comparison) {
+  return those_that(comparison, [](const Result& result) { return result.is_simulated; });
+}
+
+bool has_one_limit(const Comparison& comparison) {
+  const double limit = comparison.results.front().limit_mps2;
+  return std::all_of(comparison.results.begin(), comparison.results.end(),
+                     [limit](const Result& result) { return result.limit_mps2 == limit; });
+}
+
+std::string filter_of(const Result& first) {
+  return text_by([&](TextWriter& out) {
+    out.text("order ").general(first.order, 3).text(", cut-off ");
+    out.general(first.cutoff_hz, 10).text(" Hz, gain ");
+    if (first.gain_mode == "fixed") {
+      out.general(first.gain, 10).text(" V/(m/s^2)");
+    } else {
+      out.text(first.gain_mode == "track" ? "each trial's S" : "each device's S");
+    }
+  });
+}
+
+std::string signal_of(const Comparison& comparison) {
+  const Result& first = comparison.results.front();
+  return text_by([&](TextWriter& out) {
+    out.text("within +-");
+    if (has_one_limit(comparison)) {
+      out.general(first.limit_mps2, 10).text(" m/s^2");
+    } else {
+      out.text("a, each device's own,");
+    }
+    out.text(" for ").general(1e3 * first.duration_s, 10).text(" ms");
+  });
+}
+
+// Why devices have no matched figure, in the words of their reports.
+std::string reason_of(const std::vector<const Result*>& refused) {
+  const std::string& reason = refused.front()->matched_refused;
+  const bool is_one = std::all_of(refused.begin(), refused.end(), [&](const Result* result) {
+    return result->matched_refused == reason;
+  });
+  if (!is_one) {
+    return " (their reports say why)";
+  }
+  return reason.empty() ? "" : " (" + printable(reason) + ")";
+}
+
+void add_note_on_refusals(const Comparison& comparison, std::vector<Note>& notes) {
+  if (comparison.by == comparison.asked) {
+    return;
+  }
+  const std::vector<const Result*> refused = those_that(
+      comparison, [](const Result& result) { return !result.figure(FigureKind::kMatched).exists; });
+  notes.push_back(
+      {"All are ranked by the in-band error with the sensor's delay: there is no "
+       "figure with the delay taken out for " +
+           list_of(refused) + reason_of(refused) + ".",
+       true});
+}
+
+void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) {
+  const std::vector<const Result*> warned =
+      those_that(comparison, [](const Result& result) { return result.fit_warns; });
+  if (!warned.empty()) {
+    notes.push_back({"Not compared, because chi-square of the fit warns: " + list_of(warned) +
+                         ". The points do not follow the model within their uncertainties, so the "
+                         "figure and its U mean little.",
+                     true});
+  }
+  const std::vector<const Result*> simulated = simulated_of(comparison);
+  if (!simulated.empty()) {
+    notes.push_back({"Not compared, because the bench was simulated: " + list_of(simulated) +
+                         ". The figures say nothing about a real sensor.",
+                     true});
+  }
+}
+
+// Whether two devices that can be told apart stand the other way round in percent.
+bool differs_by_percent(const Comparison& comparison) {
+  const std::vector<Result>& results = comparison.results;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    for (std::size_t j = i + 1; j < results.size(); ++j) {
+      if (compare(results[i], results[j], comparison.by).told_apart &&
+          results[i].rms_percent() > results[j].rms_percent()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void add_notes_on_energy(const Comparison& comparison, std::vector<Note>& notes) {
+  if (comparison.by != FigureKind::kEnergy) {
+    return;
+  }
+  const std::vector<const Result*> of_box =
+      those_that(comparison, [](const Result& result) { return result.energy_u_is_of_box; });
+  if (!of_box.empty()) {
+    notes.push_back(
+        {"u(E) is that over the box of the trials times the root of 3, without the "
+         "correlation of S, f0 and beta, for " +
+             list_of(of_box) + ".",
+         false});
+  }
+  if (differs_by_percent(comparison)) {
+    notes.push_back(
+        {"By the rms error in percent of S a the order is another one: the devices "
+         "differ in S, and E grows with its square.",
+         false});
+  }
+}
+
+// The figures of an ideal sensor differ a little where the gain is fixed.
+std::string ideal_of(const Comparison& comparison) {
+  std::vector<double> all;
+  for (const Result& result : comparison.results) {
+    if (result.has_ideal) {
+      all.push_back(result.ideal_percent);
+    }
+  }
+  if (all.empty()) {
+    return "";
+  }
+  std::sort(all.begin(), all.end());
+  const std::string least = number_text(all.front(), 0.0, FigureKind::kBand);
+  const std::string most = number_text(all.back(), 0.0, FigureKind::kBand);
+  return "; an ideal sensor has " + (least == most ? least : least + " to " + most) + " %";
+}
+
+std::string reason_not_compared(const Result& first, const Result& second) {
+  std::string reason;
+  const auto add = [&reason](const std::string& words) {
+    reason += reason.empty() ? words : "; " + words;
+  };
+  constexpr std::size_t kNameShown = 36;
+  for (const Result* result : {&first, &second}) {
+    const std::string name = short_name_of(*result, kNameShown);
+    if (result->fit_warns) {
+      add("chi-square of the fit of " + name + " warns");
+    }
+    if (result->is_simulated) {
+      add("the bench of " + name + " was simulated");
+    }
+  }
+  return reason;
+}
+
+// Of a difference to the first of two figures.
+std::string ratio_of(double ratio) {
+  constexpr double kMostInPercent = 2.0;
+  return text_by([&](TextWriter& out) {
+    if (ratio > kMostInPercent) {
+      out.text("a factor of ").general(1.0 + ratio, 3);
+    } else {
+      out.general(kPercent * ratio, 3).text(" % of the first");
+    }
+  });
+}
+
+std::string difference_of(const Comparison& comparison, const Result& first, const Pair& pair) {
+  const FigureKind by = comparison.by;
+  const char* unit = figure_words(by).unit;
+  const double value = comparison.figure(first).value;
+  return text_by([&](TextWriter& out) {
+    out.text("the difference is ").text(number_text(pair.difference, pair.expanded, by).c_str());
+    out.text(unit);
+    if (value != 0.0) {
+      out.text(" (").text(ratio_of(pair.difference / abs(value)).c_str()).text(")");
+    }
+    out.text(", its expanded uncertainty (k = 2) ");
+    out.text(number_text(pair.expanded, pair.expanded, by).c_str()).text(unit);
+  });
+}
+
+std::string heading_of_expanded(FigureKind by) {
+  return by == FigureKind::kEnergy ? "U(E)" : "U(" + std::string(figure_words(by).option) + ")";
+}
+
+std::vector<std::string> headings_of(const Comparison& comparison, bool has_marks) {
+  std::vector<std::string> headings = {"rank", "device"};
+  if (has_marks) {
+    headings.emplace_back("mark");
+  }
+  headings.emplace_back(figure_words(FigureKind::kMatched).heading);
+  headings.emplace_back(figure_words(FigureKind::kBand).heading);
+  headings.emplace_back("paper's %");
+  if (comparison.by == FigureKind::kEnergy) {
+    headings.emplace_back(figure_words(comparison.by).heading);
+  }
+  headings.push_back(heading_of_expanded(comparison.by));
+  const double probability = probability_of(comparison);
+  headings.push_back(probability > 0.0 ? text_by([&](TextWriter& out) {
+    out.text("interval (").general(kPercent * probability, 6).text(" %)");
+  })
+                                       : "interval");
+  headings.emplace_back("bound");
+  return headings;
+}
+
+std::vector<std::string> row_of(const Comparison& comparison, std::size_t index, bool has_marks) {
+  const Result& result = comparison.results[index];
+  const Figure& ranked = comparison.figure(result);
+  std::vector<std::string> row = {text_of(comparison.ranks[index]), name_of(result)};
+  if (has_marks) {
+    row.push_back(mark_of(result));
+  }
+  for (const FigureKind kind : {FigureKind::kMatched, FigureKind::kBand}) {
+    row.push_back(value_text(result.figure(kind), kind));
+  }
+  row.push_back(paper_text(result));
+  if (comparison.by == FigureKind::kEnergy) {
+    row.push_back(value_text(ranked, comparison.by));
+  }
+  row.push_back(
+      ranked.has_uncertainty ? number_text(ranked.expanded, ranked.expanded, comparison.by) : "-");
+  row.push_back(interval_text(ranked, comparison.by));
+  row.push_back(bound_text(ranked, comparison.by));
+  return row;
+}
+
+bool has_marks(const Comparison& comparison) {
+  return std::any_of(comparison.results.begin(), comparison.results.end(), is_marked);
+}
+
+}  // namespace
+
+std::string text_of(const Rank& rank) {
+  const std::string best = std::to_string(rank.best);
+  return rank.best == rank.worst ? best : best + "-" + std::to_string(rank.worst);
+}
+
+std::string mark_of(const Result& result) {
+  std::string mark = result.fit_warns ? kFitMark : "";
+  if (result.is_simulated) {
+    mark += mark.empty() ? kSimulatedMark : std::string(" ") + kSimulatedMark;
+  }
+  return mark;
+}
+
+std::string criterion_of(const Result& result) {
+  constexpr std::pair<std::string_view, const char*> kWords[] = {
+      {"ise", "integral-square error"},
+      {"difference", "energy difference"},
+      {"band", "in-band error"},
+  };
+  for (const auto& words : kWords) {
+    if (result.criterion == words.first) {
+      return words.second;
+    }
+  }
+  return printable(result.criterion);
+}
+
+std::string banner_of(const Comparison& comparison) {
+  const std::size_t count = simulated_of(comparison).size();
+  if (count == 0) {
+    return "";
+  }
+  return "SIMULATION: " + (count == comparison.results.size() ? std::string("no") : "not every") +
+         " result was measured on a real bench";
+}
+
+std::vector<Fact> conditions_of(const Comparison& comparison) {
+  const Result& first = comparison.results.front();
+  const char* what = comparison.by == FigureKind::kEnergy ? "" : ", worst rms in % of S a";
+  return {
+      {"Filter", filter_of(first)},
+      {"Signal", signal_of(comparison)},
+      {"Criterion", criterion_of(first) + (first.method == "paper" ? ", the paper's method"
+                                                                   : ", the best signal found")},
+      {"Ranked by", figure_words(comparison.by).words + std::string(what)}};
+}
+
+ComparisonTable table_of(const Comparison& comparison) {
+  ComparisonTable table;
+  const bool marks = has_marks(comparison);
+  table.names = 1;
+  table.headings = headings_of(comparison, marks);
+  for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+    table.rows.push_back(row_of(comparison, i, marks));
+  }
+  return table;
+}
+
+std::vector<Fact> legend_of(const Comparison& comparison) {
+  const bool is_difference = comparison.results.front().criterion == "difference";
+  std::vector<Fact> legend = {
+      {"rank", "1-2 is first or second: the uncertainties do not say which."},
+      {"matched %",
+       "the largest rms error within the filter's band, the sensor's constant delay "
+       "taken out, in percent of S a. An ideal sensor has 0."},
+      {"in band %", "the same with the sensor's delay."},
+      {"paper's %", std::string(is_difference ? "" : "rms error, ") +
+                        "sqrt(E/T) in percent of S a; mostly the delay of the filter and what it "
+                        "keeps out" +
+                        ideal_of(comparison) + "."},
+      {heading_of_expanded(comparison.by),
+       std::string("expanded uncertainty (k = 2) of the figure that ranks, from those of S, f0 ") +
+           "and beta; so are interval and bound of that figure. No signal has more than the "
+           "bound."}};
+  if (has_marks(comparison)) {
+    legend.push_back({"mark",
+                      "fit: chi-square of the fit warns; sim: the bench was simulated. "
+                      "Such a device is told apart from no other."});
+  }
+  return legend;
+}
+
+std::vector<Note> notes_of(const Comparison& comparison) {
+  std::vector<Note> notes;
+  add_note_on_refusals(comparison, notes);
+  add_notes_on_marks(comparison, notes);
+  add_notes_on_energy(comparison, notes);
+  return notes;
+}
+
+Fact verdict_of(const Comparison& comparison, std::size_t index) {
+  const Result& first = comparison.results[index];
+  const Result& second = comparison.results[index + 1];
+  const Pair& pair = comparison.pairs[index];
+  if (!pair.is_compared) {
+    return {"not compared", reason_not_compared(first, second)};
+  }
+  if (!pair.has_uncertainty) {
+    const bool has_one =
+        comparison.figure(first).has_uncertainty || comparison.figure(second).has_uncertainty;
+    return {"CANNOT BE RANKED", std::string("no uncertainty is known for ") +
+                                    (has_one ? "one of them" : "either") +
+                                    "; give u of S, f0 and beta, or measured points"};
+  }
+  const std::string difference = difference_of(comparison, first, pair);
+  if (!pair.told_apart) {
+    return {"CANNOT BE TOLD APART", difference};
+  }
+  return {"told apart",
+          difference + (pair.proven ? ", and no signal of any shape can turn that round at the "
+                                      "estimates: the upper bound of the first is below the "
+                                      "figure of the second"
+                                    : "")};
+}
+
+}  // namespace emax::desk

@@ -1,0 +1,91 @@
+// Figures in as many digits as their uncertainty justifies.
+#include "desk/compare/figure_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "emax/app/base/text_writer.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/files/rounding.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+constexpr int kDigitsAlone = 4;
+constexpr int kMostDigits = 12;
+constexpr const char* kNone = "-";
+
+constexpr FigureWords kWords[kFigureKinds] = {
+    {"matched %", "in-band error with the sensor's constant delay taken out", " % of S a",
+     "matched"},
+    {"in band %", "in-band error with the sensor's delay", " % of S a", "band"},
+    {"E in V^2 s", "energy of the paper's criterion", " V^2 s", "energy"},
+};
+
+int exponent_of(double value) {
+  return value != 0.0 ? static_cast<int>(std::floor(std::log10(std::abs(value)))) : 0;
+}
+
+std::string in_digits(double value, int digits, FigureKind kind) {
+  constexpr double kLeastPlain = 1e-5;
+  constexpr double kMostPlain = 1e6;
+  const double size = std::abs(value);
+  const bool is_plain = size == 0.0 || (size >= kLeastPlain && size < kMostPlain);
+  StringSink sink;
+  app::TextWriter out(sink);
+  if (kind != FigureKind::kEnergy && is_plain) {
+    out.fixed(value, std::clamp(digits - 1 - exponent_of(value), 0, kMostDigits));
+  } else {
+    out.scientific(value, digits - 1);
+  }
+  return sink.text();
+}
+
+}  // namespace
+
+const FigureWords& figure_words(FigureKind kind) noexcept {
+  return kWords[static_cast<std::size_t>(kind)];
+}
+
+std::string number_text(double value, double expanded, FigureKind kind) {
+  int digits = kDigitsAlone;
+  if (expanded > 0.0) {
+    digits = std::clamp(exponent_of(value) - exponent_of(expanded) + 2, 1, kMostDigits);
+  }
+  return in_digits(value, digits, kind);
+}
+
+std::string bound_text(const Figure& figure, FigureKind kind) {
+  if (!figure.has_bound) {
+    return kNone;
+  }
+  return in_digits(rounded_up(figure.bound, kDigitsAlone - 1), kDigitsAlone, kind);
+}
+
+std::string value_text(const Figure& figure, FigureKind kind) {
+  return figure.exists ? number_text(figure.value, figure.expanded, kind) : kNone;
+}
+
+std::string interval_text(const Figure& figure, FigureKind kind) {
+  if (!figure.has_interval) {
+    return kNone;
+  }
+  return number_text(figure.low, figure.expanded, kind) + " to " +
+         number_text(figure.high, figure.expanded, kind);
+}
+
+std::string paper_text(const Result& result) {
+  const Figure& energy = result.figure(FigureKind::kEnergy);
+  if (energy.value < 0.0) {
+    return kNone;
+  }
+  const double percent = result.rms_percent();
+  // The root halves what is relative.
+  const double expanded = energy.value > 0.0 ? 0.5 * percent * energy.expanded / energy.value : 0.0;
+  return number_text(percent, expanded, FigureKind::kBand);
+}
+
+}  // namespace emax::desk

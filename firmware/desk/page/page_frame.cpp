@@ -1,0 +1,114 @@
+// The frame of every page of the program.
+#include "desk/page/page_frame.hpp"
+
+#include "emax/app/base/version.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+// Nothing may be loaded, neither from outside nor by what a label might say.
+constexpr const char* kHead = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<link rel="icon" href="data:,">
+)";
+
+constexpr const char* kStyle = R"(<style>
+:root { color-scheme: light dark; --text: #1a1a1a; --soft: #595959; --line: #c4c4c4; --paper: #ffffff;
+  --warn: #8a2b00; --warn-paper: #fff1e6; --note-paper: #f1f4f8; }
+@media (prefers-color-scheme: dark) {
+  :root { --text: #ececec; --soft: #b4b4b4; --line: #5a5a5a; --paper: #161616; --warn: #ffb080;
+    --warn-paper: #3a2413; --note-paper: #242a31; }
+}
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1.5rem; max-width: 62rem; background: var(--paper); color: var(--text);
+  font: 1rem/1.45 sans-serif; overflow-wrap: anywhere; }
+h1 { margin: 0 0 .2rem; font-size: 1.7rem; line-height: 1.2; }
+h2 { margin: 2.2rem 0 .5rem; padding-top: .6rem; border-top: 1px solid var(--line); font-size: 1.25rem; }
+p { margin: .6rem 0; }
+sup { line-height: 0; }
+.about { color: var(--soft); }
+#title .about { white-space: pre-line; }
+.headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(14rem, 1fr)); gap: .8rem 1.5rem;
+  margin: 1rem 0; padding: 1rem; border: 2px solid var(--text); }
+.headline div { min-width: 0; }
+.headline dt { color: var(--soft); font-size: .9rem; }
+.headline dd { margin: 0; font-size: 1.1rem; }
+.headline .first { grid-column: 1 / -1; }
+.headline .first dd { font-size: 2rem; font-weight: bold; line-height: 1.2; }
+.warning, .note { padding: .6rem .8rem; border-left: .4rem solid var(--line); background: var(--note-paper); }
+.warning { border-color: var(--warn); background: var(--warn-paper); color: var(--warn); font-weight: bold; }
+table { border-collapse: collapse; }
+.rows { width: 100%; }
+.rows th { width: 14rem; padding: .15rem 1rem .15rem 0; font-weight: normal; color: var(--soft); }
+.rows th, .rows td { text-align: left; vertical-align: top; }
+.wide { overflow-x: auto; margin: .8rem 0; }
+.numbers { font-variant-numeric: tabular-nums; font-size: .88rem; overflow-wrap: normal; }
+.numbers th, .numbers td { padding: .12rem .7rem; text-align: right; white-space: nowrap; }
+.numbers .name { min-width: 8.5rem; text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.numbers tbody th { font-weight: normal; }
+.numbers tbody th, .numbers tbody td { vertical-align: top; }
+.numbers thead tr:last-child th { border-bottom: 1px solid var(--text); }
+figure { margin: 1.2rem 0; }
+figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
+figcaption { margin-top: .4rem; color: var(--soft); font-size: .92rem; }
+a { color: inherit; }
+footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--line); color: var(--soft);
+  font-size: .9rem; }
+@media screen and (max-width: 36rem) {
+  .rows th, .rows td { display: block; width: auto; }
+  .rows td { padding-bottom: .5rem; }
+  figure { overflow-x: auto; }
+  figure svg { min-width: 36rem; }
+}
+@page { size: A4; margin: 15mm; }
+@media print {
+  :root { --text: #000000; --soft: #404040; --line: #a0a0a0; --paper: #ffffff; --warn: #000000;
+    --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
+  html { font-size: 9.5pt; }
+  body { max-width: none; padding: 0; }
+  figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  figure svg { max-height: 85mm; }
+  #fit svg { max-height: 120mm; }
+  #ranking svg { max-height: 230mm; }
+  h1, h2, h2 + p, thead { break-after: avoid; }
+  figure, .wide, .numbers tr, .headline, .warning, .note { break-inside: avoid; }
+  .warning { border: 1.5pt solid #000000; }
+  .wide { overflow: visible; }
+  .numbers { font-size: 8pt; }
+  .numbers th, .numbers td { padding: .05rem .35rem; }
+  .numbers .name { min-width: 0; }
+}
+</style>
+</head>
+<body>
+)";
+
+}  // namespace
+
+std::string page_opening(const std::string& title, const std::string& kind,
+                         const std::string& about) {
+  return std::string(kHead) + "<title>" + title + kind + "</title>\n" + kStyle +
+         "<main>\n<header>\n<h1>" + title + "</h1>\n<p class=\"about\">" + about +
+         "</p>\n</header>\n";
+}
+
+std::string page_closing(const std::string& files) {
+  return std::string("</main>\n<footer>Made by emax ") + app::kVersion + ". " + files +
+         "</footer>\n</body>\n</html>\n";
+}
+
+void append_figure(std::string& html, const char* kind, const std::string& name,
+                   const std::string& value) {
+  html += std::string("<div") + kind + "><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
+}
+
+void write_html(app::TextWriter& out, const std::string& html) {
+  out.text(Span<const char>(html.data(), html.size()));
+}
+
+}  // namespace emax::desk
