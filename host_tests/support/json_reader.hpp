@@ -53,6 +53,12 @@ class JsonReader {
     } else if (text_.compare(at_, 4, "null") == 0) {
       at_ += 4;
       values_[path] = "null";
+    } else if (text_.compare(at_, 4, "true") == 0) {
+      at_ += 4;
+      values_[path] = "true";
+    } else if (text_.compare(at_, 5, "false") == 0) {
+      at_ += 5;
+      values_[path] = "false";
     } else {
       values_[path] = number_text();
     }

@@ -358,9 +358,10 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
     ASSERT_LE(run_on(evaluation).progress(), 1.0);
     run_on(evaluation).step();
   }
-  const std::vector<Stage> expected = {Stage::kModel,      Stage::kFitDraws,   Stage::kEnergy,
-                                       Stage::kBound,      Stage::kPrediction, Stage::kAdaptive,
-                                       Stage::kMonteCarlo, Stage::kGuard,      Stage::kTrend};
+  const std::vector<Stage> expected = {
+      Stage::kModel,    Stage::kFitDraws,    Stage::kEnergy, Stage::kBound, Stage::kPrediction,
+      Stage::kAdaptive, Stage::kMonteCarlo,  Stage::kGuard,  Stage::kIdeal, Stage::kBand,
+      Stage::kMatched,  Stage::kUncertainty, Stage::kTrend};
   ASSERT_EQ(stages, expected);
   EXPECT_EQ(evaluation.stage, Stage::kDone);
   EXPECT_EQ(run_on(evaluation).progress(), 1.0);

@@ -12,7 +12,6 @@
 namespace {
 
 using emax::Criterion;
-using emax::DelayMode;
 using emax::Distribution;
 using emax::FrequencyResponse;
 using emax::Generator;
@@ -86,7 +85,9 @@ const Change kChanges[] = {
     {"unused_limit", [](Settings& s) { s.limit_mps2 = 2.0; }, false, false, false},
     {"criterion", [](Settings& s) { s.criterion = Criterion::kEnergyDifference; }, true, true,
      true},
-    {"reference_delay", [](Settings& s) { s.delay_mode = DelayMode::kNone; }, true, true, true},
+    {"reference_delay",
+     [](Settings& s) { s.delay_choice = emax::app::DelayChoice::kGiven, s.delay_s = 2e-5; }, true,
+     true, true},
     {"unused_reference_delay", [](Settings& s) { s.delay_s = 1e-6; }, false, false, false},
     {"method", [](Settings& s) { s.method = Method::kPaper; }, true, true, true},
     {"unused_step", [](Settings& s) { s.step_s = 3e-6; }, false, false, false},

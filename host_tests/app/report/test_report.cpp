@@ -235,7 +235,7 @@ TEST(Report, OtherSettings) {
   const std::string report = report_of(evaluated(kTable2, settings));
   expect_well_formed(report);
   EXPECT_TRUE(says(line_with(report, "Criterion"), "energy difference"));
-  EXPECT_FALSE(says(report, "rms error"));
+  EXPECT_TRUE(says(report, "\n  sqrt(E/T)  "));  // No error, so no rms error.
   EXPECT_TRUE(says(line_with(report, "Filter gain"), "in each trial that trial's S"));
   EXPECT_TRUE(says(line_with(report, "Limit a"), "9.81 m/s^2, as given"));
   EXPECT_TRUE(says(report, "1982, seed 123456789,345678901,567890123\n"));
@@ -321,10 +321,11 @@ TEST(Report, MarksOfSomebodyElse) {
   const std::string& report = sink.text();
   EXPECT_TRUE(says(report, "[0Device]{a\nb}"));  // As it was given.
   EXPECT_TRUE(says(report, "measured points: {<a>.csv}"));
-  EXPECT_TRUE(says(report, "[section 5 FIT]"));
-  // Parameters, large residuals, trend: 6, 3 and 3 columns; 3, 10 and 2 lines and their heads.
-  EXPECT_EQ(marks.tables(), 3);
-  EXPECT_EQ(marks.cells(), 6 * 4 + 3 * 11 + 3 * 3);
+  EXPECT_TRUE(says(report, "[section 6 FIT]"));
+  // Figures, parameters, large residuals, trend: 4, 6, 3 and 3 columns; 4, 3, 10 and 2 lines and
+  // their heads.
+  EXPECT_EQ(marks.tables(), 4);
+  EXPECT_EQ(marks.cells(), 4 * 5 + 6 * 4 + 3 * 11 + 3 * 3);
   EXPECT_EQ(marks.warnings(), 2);  // The fit, and few trials.
 }
 

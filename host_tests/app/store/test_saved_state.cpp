@@ -73,6 +73,8 @@ void fill(Settings& settings, SweepSettings& sweep) {
   settings.limit_is_auto = false;
   settings.limit_mps2 = 9.80665;
   settings.criterion = emax::Criterion::kEnergyDifference;
+  settings.delay_choice = emax::app::DelayChoice::kGiven;
+  settings.delay_s = 2.5e-5;
   settings.method = emax::Method::kPaper;
   settings.step_s = 3e-6;
   settings.iterations = 77;
@@ -141,7 +143,7 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
 TEST(SavedSettings, ComeBackAsTheyWere) {
   Settings settings = kDefaultSettings;
   SweepSettings sweep = default_sweep_settings();
-  EXPECT_EQ(encoded(settings, sweep).size(), 220U + 8 * 5 + 8 * 42 + 16 * 1);
+  EXPECT_EQ(encoded(settings, sweep).size(), 229U + 8 * 5 + 8 * 42 + 16 * 1);
   Target target;
   ASSERT_EQ(target.decode(encoded(settings, sweep)), Status::kOk);
   expect_same(target.sweep, sweep);
@@ -180,7 +182,7 @@ TEST(SavedSettings, ComeBackAsTheyWere) {
 TEST(SavedSettings, BytesOfTheDefaults) {
   const Bytes bytes = encoded(kDefaultSettings, default_sweep_settings());
   const std::array<std::uint8_t, 33> expected = {
-      'E',  'S',  1,    0,                              // Kind and version.
+      'E',  'S',  2,    0,                              // Kind and version.
       10,   0,    0,    0,                              // Order.
       0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x8F, 0x40,   // 1000.0.
       0,                                                // GainMode::kAuto.
@@ -281,7 +283,7 @@ TEST(SavedSettings, WhatCheckRefusesIsRefused) {
       [nan](Settings& s, SweepSettings&) { s.gain = nan; },
       [infinity](Settings& s, SweepSettings&) { s.limit_mps2 = infinity; },
       [](Settings& s, SweepSettings&) { s.gain_mode = static_cast<emax::app::GainMode>(3); },
-      [](Settings& s, SweepSettings&) { s.criterion = static_cast<emax::Criterion>(2); },
+      [](Settings& s, SweepSettings&) { s.criterion = static_cast<emax::Criterion>(3); },
       [](Settings& s, SweepSettings&) { s.method = static_cast<emax::Method>(2); },
       [](Settings& s, SweepSettings&) { s.distribution = static_cast<emax::Distribution>(2); },
       [](Settings& s, SweepSettings&) { s.generator = static_cast<emax::Generator>(2); },
@@ -491,7 +493,7 @@ TEST(SavedSettings, CutAtEveryByteOfTheMemory) {
     ASSERT_TRUE(target.settings.trials == 1002 || (was_cut && target.settings.trials == 1001));
   }
   // A slot erased, and the record with its frame in whole units.
-  EXPECT_EQ(cuts, 1536U + (612U + 20U + 31U) / 32U * 32U + 1U);
+  EXPECT_EQ(cuts, 1536U + (621U + 20U + 31U) / 32U * 32U + 1U);
 }
 
 }  // namespace

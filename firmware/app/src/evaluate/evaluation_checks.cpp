@@ -185,10 +185,22 @@ ReferenceFilter reference_filter(const EvaluationResults& results) noexcept {
                       gain_is_given ? settings.gain : results.device.estimate.sensitivity});
 }
 
+ReferenceDelay delay_of(const Settings& settings) noexcept {
+  switch (settings.delay_choice) {
+    case DelayChoice::kAuto:
+      return {DelayMode::kOfSensor, 0.0};
+    case DelayChoice::kGiven:
+      return {DelayMode::kGiven, settings.delay_s};
+    case DelayChoice::kNone:
+      break;
+  }
+  return {DelayMode::kNone, 0.0};
+}
+
 ErrorMeasure measure_of(const Settings& settings) noexcept {
   const bool is_in_band = settings.criterion == Criterion::kInBandError;
-  return {settings.criterion, is_in_band ? ReferenceDelay{settings.delay_mode, settings.delay_s}
-                                         : ReferenceDelay{DelayMode::kNone, 0.0}};
+  return {settings.criterion,
+          is_in_band ? delay_of(settings) : ReferenceDelay{DelayMode::kNone, 0.0}};
 }
 
 bool needs_trials(Goal goal, const Settings& settings) noexcept {

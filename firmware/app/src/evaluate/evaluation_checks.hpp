@@ -48,6 +48,9 @@ Failure failure_of_model(Status status, const Settings& settings) noexcept;
 /// The reference filter of a device that is known.
 ReferenceFilter reference_filter(const EvaluationResults& results) noexcept;
 
+/// The delay that these settings allow the sensor.
+ReferenceDelay delay_of(const Settings& settings) noexcept;
+
 /// What these settings call the error.
 ErrorMeasure measure_of(const Settings& settings) noexcept;
 

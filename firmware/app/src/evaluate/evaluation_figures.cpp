@@ -55,8 +55,8 @@ Status Evaluation::set_figure_model(ModalModel& model) const noexcept {
   }
   ReferenceDelay delay;
   if (results_.stage == Stage::kMatched) {
-    const bool is_given = settings.delay_mode == DelayMode::kGiven;
-    delay = {is_given ? DelayMode::kGiven : DelayMode::kOfSensor, settings.delay_s};
+    const bool is_given = settings.delay_choice == DelayChoice::kGiven;
+    delay = is_given ? delay_of(settings) : ReferenceDelay{DelayMode::kOfSensor, 0.0};
   }
   return model.set(device, filter, {Criterion::kInBandError, delay});
 }
@@ -73,6 +73,13 @@ void Evaluation::begin_figure(Stage stage) noexcept {
   }
   auto* const part = new (&work_.part_.figure) EvaluationWorkspace::FigurePart;
   Status status = set_figure_model(part->model);
+  if (stage == Stage::kIdeal && results_.settings.criterion == Criterion::kEnergyDifference) {
+    // The energy of what an ideal sensor passes, less as little as the filter can pass: nothing.
+    const double limit = fast_switching_limit(part->model, results_.settings.duration_s);
+    results_.ideal = {true, status, results_.a2() * limit};
+    work_.figure_phase_ = Phase::kEnd;
+    return;
+  }
   if (status == Status::kOk) {
     status = work_.search_.start(part->model, figure_search(results_.settings));
   }

@@ -244,7 +244,7 @@ void InstrumentCommands::energy(Instrument& i, Call& call) noexcept {
 
 void InstrumentCommands::band(Instrument& i, Call& call) noexcept {
   const EvaluationResults& evaluation = results_of(i);
-  const bool is_plain = i.settings().delay_mode == DelayMode::kNone;
+  const bool is_plain = i.settings().delay_choice == DelayChoice::kNone;
   const FigureResults& figure = is_plain ? evaluation.band : evaluation.matched;
   if (call.stage() == Call::Stage::kItem) {
     call.answer().number(figure.times_s()[call.item()]);

@@ -93,7 +93,7 @@ void write_papers_rows(const EvaluationResults& results, ReportWriter& out) noex
 }
 
 void write_refusal(const char* name, Status status, ReportWriter& out) noexcept {
-  out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(". ");
+  out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(":\n  ");
   out.text(explain(status)).line();
 }
 
@@ -187,7 +187,7 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     const FigureResults& matched = results.matched;
     out.line();
     out.label("Delay taken out").general(kMicro * matched.delay_s, 5).text(" us");
-    const bool is_given = results.settings.delay_mode == DelayMode::kGiven;
+    const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
     out.text(is_given ? ", as given" : ", beta/(pi f0), the sensor's at low frequency").line();
     out.label("It leaves open").general(matched.epsilon_percent, 2).text(" % of S a").line();
     write_figure(results, matched, out);

@@ -245,7 +245,7 @@ struct EvaluationResults {
                                            false,
                                            0.0,
                                            Criterion::kIntegralSquareError,
-                                           DelayMode::kNone,
+                                           DelayChoice::kAuto,
                                            0.0,
                                            {},
                                            0.0,

@@ -28,6 +28,13 @@ enum class GainMode : std::uint8_t {
   kTrack,  ///< The S of each trial.
 };
 
+/// What delay the in-band errors allow the sensor.
+enum class DelayChoice : std::uint8_t {
+  kAuto,  ///< Its own at low frequency.
+  kNone,
+  kGiven,  ///< A number.
+};
+
 /// Everything but the device. `Settings{}` is all zero, which `check()` refuses.
 struct Settings {
   int filter_order = 0;
@@ -38,8 +45,8 @@ struct Settings {
   bool limit_is_auto = false;  ///< a is the number of S, as in the paper.
   double limit_mps2 = 0.0;     ///< a; used if `limit_is_auto` is false.
   Criterion criterion = Criterion::kIntegralSquareError;
-  DelayMode delay_mode = DelayMode::kNone;  ///< Of the reference of in-band errors.
-  double delay_s = 0.0;                     ///< Used by DelayMode::kGiven only.
+  DelayChoice delay_choice = DelayChoice::kAuto;  ///< Of the reference of in-band errors.
+  double delay_s = 0.0;                           ///< Used by DelayChoice::kGiven only.
   Method method = Method::kBest;
   double step_s = 0.0;           ///< The paper's quantization step; Method::kPaper only.
   std::uint32_t iterations = 0;  ///< The paper's J; Method::kPaper only.
@@ -63,7 +70,6 @@ constexpr Settings default_settings() noexcept {
   settings.cutoff_hz = 1000.0;
   settings.duration_s = 0.002;
   settings.limit_is_auto = true;
-  settings.delay_mode = DelayMode::kOfSensor;
   settings.step_s = 2e-6;
   settings.iterations = 30;
   settings.trials = 200000;

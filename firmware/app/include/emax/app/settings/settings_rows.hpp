@@ -13,7 +13,7 @@ namespace emax::app {
 inline constexpr const char* kGainWords[] = {"AUTO", "TRACk"};
 inline constexpr const char* kLimitWords[] = {"AUTO"};
 inline constexpr const char* kCriterionWords[] = {"ISE", "DIFFerence", "BAND"};
-inline constexpr const char* kDelayWords[] = {"NONE", "AUTO"};
+inline constexpr const char* kDelayWords[] = {"AUTO", "NONE"};
 inline constexpr const char* kMethodWords[] = {"BEST", "PAPer"};
 inline constexpr const char* kDistributionWords[] = {"BOX", "NORMal"};
 inline constexpr const char* kGeneratorWords[] = {"WH2006", "WH1982"};
@@ -67,14 +67,14 @@ inline constexpr SettingRow kSettingRows[] = {
                     "band: energy of the error within the filter's band"})
         .as_command("CALCulate:ENERgy:CRITerion", "ISE|DIFFerence|BAND",
                     "Energy of the error, difference of the energies, or error in band"),
-    setting("reference delay", EMAX_SETTING(Settings, delay_s), offsetof(Settings, delay_mode),
+    setting("reference delay", EMAX_SETTING(Settings, delay_s), offsetof(Settings, delay_choice),
             SettingGroup::kSignal, Concern::kEnergy)
-        .within(0.0, kMaxDuration_s, "'none', 'auto', or a number of seconds, 0 or more")
-        .or_one_of(kDelayWords, static_cast<std::uint8_t>(DelayMode::kGiven))
-        .as_option({"reference-delay", "none|auto|NUMBER", "none, auto or a number of seconds",
+        .within(0.0, kMaxDuration_s, "'auto', 'none', or a number of seconds, 0 or more")
+        .or_one_of(kDelayWords, static_cast<std::uint8_t>(DelayChoice::kGiven))
+        .as_option({"reference-delay", "auto|none|NUMBER", "auto, none or a number of seconds",
                     "delay that the in-band error allows the sensor:\n"
                     "auto is its own at low frequency, beta/(pi f0)"})
-        .as_command("CALCulate:ENERgy:DELay", "<s>|NONE|AUTO",
+        .as_command("CALCulate:ENERgy:DELay", "<s>|AUTO|NONE",
                     "Delay taken out of the error in band; AUTO: that of the sensor", "S"),
     setting("method", EMAX_SETTING(Settings, method), SettingGroup::kSignal, Concern::kEnergy)
         .one_of(kMethodWords)

@@ -1,0 +1,92 @@
+// The figures beside the maximum energy, against values found outside this code.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "emax/app/evaluate/evaluation_results.hpp"
+
+#include "support/evaluations.hpp"
+#include "support/paper_device.hpp"
+
+namespace {
+
+using emax::Status;
+using emax::app::Device;
+using emax::app::EvaluationResults;
+using emax::app::Settings;
+using emax::test::evaluated;
+using emax::test::quick_settings;
+
+const Device kPaper = {{1.037, 4073.0, 0.3182}, {0.003, 6.0, 0.0004}};
+
+TEST(EvaluationFigures, OfTheSensorOfThePaper) {
+  const EvaluationResults& results = evaluated(kPaper, quick_settings());
+  ASSERT_TRUE(results.band.exists());
+  ASSERT_TRUE(results.matched.exists());
+  ASSERT_TRUE(results.ideal.exists());
+  // Nine digits are given: half a unit of the last.
+  EXPECT_NEAR(results.band.energy_v2s, 7.66114200e-6, 0.5e-14);
+  EXPECT_NEAR(results.matched.energy_v2s, 3.30567639e-7, 0.5e-15);
+  EXPECT_NEAR(results.ideal.energy_v2s, 5.080404e-3, 0.5e-9);
+  EXPECT_NEAR(results.percent_of(results.band.energy_v2s), 5.755, 5e-4);
+  EXPECT_NEAR(results.percent_of(results.matched.energy_v2s), 1.196, 5e-4);
+  EXPECT_NEAR(results.percent_of(results.ideal.energy_v2s), 148.21, 5e-3);
+  EXPECT_GT(results.band.bound_v2s, results.band.energy_v2s);
+  ASSERT_EQ(results.band.times_s().size(), 1U);
+  EXPECT_NEAR(results.band.times_s()[0], 0.639919e-3, 0.5e-9);
+  EXPECT_DOUBLE_EQ(results.matched.delay_s, 0.3182 / (3.14159265358979324 * 4073.0));
+}
+
+TEST(EvaluationFigures, TellSensorsApart) {
+  const EvaluationResults& results = evaluated({{1.0, 8e3, 0.7}, {}}, quick_settings());
+  EXPECT_NEAR(results.percent_of(results.band.energy_v2s), 6.007, 5e-4);
+  EXPECT_NEAR(results.percent_of(results.matched.energy_v2s), 0.0176, 5e-5);
+  EXPECT_FALSE(results.uncertainty.is_done) << "there are no uncertainties";
+  EXPECT_FALSE(results.band.uncertainty.is_done);
+}
+
+TEST(EvaluationFigures, ADelayThatLeavesTooMuchOpenIsRefusedAndTheRestStays) {
+  Settings settings = quick_settings();
+  settings.filter_order = 4;
+  const EvaluationResults& results = evaluated({{1.037, 2e3, 0.7}, {}}, settings);
+  EXPECT_EQ(results.status(), Status::kOk);
+  EXPECT_TRUE(results.band.exists());
+  EXPECT_EQ(results.matched.status, Status::kDelayNotResolved);
+}
+
+TEST(EvaluationFigures, UncertaintyIsThatOfNormalParameters) {
+  Settings settings = quick_settings();
+  settings.trials = 20000;
+  const EvaluationResults& results = evaluated(kPaper, settings);
+  ASSERT_TRUE(results.uncertainty.exists());
+  // E is nearly linear in the parameters, and a uniform box has a third of the variance; both are
+  // known to 0.5 % (20000 trials).
+  EXPECT_NEAR(results.uncertainty.u_v2s / results.trials.result.u, std::sqrt(3.0), 0.03);
+  // In band S is held. rms is near to linear in beta/f0: u is what its differences say.
+  Device moved = kPaper;
+  const double at_estimate = results.percent_of(results.band.energy_v2s);
+  const double u_percent = results.band.uncertainty.u_percent;
+  const double low = results.percent_of(results.band.uncertainty.symmetric.low);
+  moved.estimate.natural_frequency_hz += 6.0;
+  moved.u = {};
+  const EvaluationResults& higher = evaluated(moved, settings);
+  const double of_f0 = higher.percent_of(higher.band.energy_v2s) - at_estimate;
+  moved = {{1.037, 4073.0, 0.3182 + 0.0004}, {}};
+  const EvaluationResults& damped = evaluated(moved, settings);
+  const double of_beta = damped.percent_of(damped.band.energy_v2s) - at_estimate;
+  EXPECT_NEAR(u_percent, std::hypot(of_f0, of_beta), 0.03 * u_percent);
+  EXPECT_NEAR(low, at_estimate - 1.96 * u_percent, 0.1 * u_percent);
+}
+
+TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {
+  const EvaluationResults& results =
+      evaluated({{0.0102, 55000.0, 0.01}, {}}, emax::app::kDefaultSettings);
+  EXPECT_EQ(results.status(), Status::kOk);
+  EXPECT_NEAR(results.energy_v2s(), 3.44175215e-8, 0.5e-16);
+  EXPECT_EQ(results.trend_looked_at, 5U);
+  Settings asked = emax::app::kDefaultSettings;
+  asked.trend_s = {0.002, 1.0};
+  asked.trend_count = 2;
+  EXPECT_EQ(evaluated({{0.0102, 55000.0, 0.01}, {}}, asked).status(), Status::kTooManyCells);
+}
+
+}  // namespace
