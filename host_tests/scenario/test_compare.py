@@ -319,6 +319,17 @@ class CompareInBand(Comparing, ProgramTest):
 
 
 class CompareOutput(Comparing, ProgramTest):
+    def test_labels_are_no_formulas_and_no_control_characters(self):
+        odd = ["=cmd|' /C calc'!A0", "+1", "-2", "@SUM(1)", " =3", "a\x1b[31mb\tc\x7f"]
+        self.compare(*(result((5 + i) * 1e-3, device=name, serial=name) for i, name in enumerate(odd)))
+        names = [f"{i}.json" for i in range(len(odd))]
+        text = self.succeed("compare", *names, "--csv")
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+        expected = ["'" + name for name in odd[:-1]] + ["a [31mb c "]
+        self.assertEqual(sorted(row["device"] for row in rows), sorted(expected))
+        self.assertEqual(sorted(row["serial"] for row in rows), sorted(expected))
+        self.assertFalse(any(ord(c) < 32 for c in text.replace("\n", "")))
+
     def test_csv_and_odd_labels(self):
         odd = 'say "hi", <b>&amp;</b>\nnext'
         self.compare(result(5e-3, device=odd, serial="12;3"), result(6e-3, None, device="x" * 10_000))
@@ -579,12 +590,21 @@ class CompareRefusals(Comparing, ProgramTest):
             ("a.json", "b.json", "--out", "o", "--out=p"): "--out: given twice",
             ("a.json", "missing.json"): "missing.json: No such file",
             ("a.json", "."): "Is a directory",
+            ("a.json", "b.json", "--out", "a.json/such/directory"): "--out: a.json/such/directory",
             ("a.json", "b.json", "--by", "xi"): '--by: "xi" given; expected matched, band or energy',
             ("a.json", "b.json", "--by"): "--by: no value; expected matched, band or energy",
-            ("a.json", "b.json", "--out", "no/such/directory"): "--out: no/such/directory",
         }.items():
             with self.subTest(arguments=arguments):
                 self.refuse(["compare", *arguments], words)
+
+    def test_hundreds_of_thousands_of_names(self):
+        # Compared with one another, these took nine minutes; the program's time limit here is 100 s.
+        text = '{"version":"0.1.0",' + ",".join(f'"{i}":0' for i in range(300_000)) + "}"
+        self.save("many.json", text)
+        self.save("other.json", result())
+        self.refuse(["compare", "many.json", "other.json"], "many.json: holds no maximum energy")
+        self.save("twice.json", text[:-1] + ',"7":1}')
+        self.refuse(["compare", "twice.json", "other.json"], "twice.json:1:", "a name for the second time")
 
     def test_unequal_conditions(self):
         self.save("a.json", result())

@@ -141,9 +141,9 @@ class BadPoints(ProgramTest):
 
     def test_files_that_are_not_there_or_not_tables(self):
         (self.directory / "folder").mkdir()
-        self.refuse(["report", "--points", "missing.csv"], "emax: missing.csv: ", "No such file", "expected a CSV file")
+        self.refuse(["report", "--points", "missing.csv"], "emax: missing.csv: ", "No such file", "expected a table")
         self.refuse(["report", "--points", "missing/x.csv"], "emax: missing/x.csv: ", "No such file")
-        self.refuse(["report", "--points", "folder"], "emax: folder: ", "Is a directory", "expected a CSV file")
+        self.refuse(["report", "--points", "folder"], "emax: folder: ", "Is a directory", "expected a table")
         self.refuse(["report", "--points", "x" * 5000], "emax: xxx", "name too long")
         self.refuse(["report", "--points", "a\nb"], "emax: a?b: ")
 
@@ -166,7 +166,7 @@ class BadPoints(ProgramTest):
     def test_binary(self):
         self.refuse_points(bytes(range(256)) * 8, 1, "expected")
         self.refuse_points(b"\x7fELF\x02\x01\x01\x00\x00\n" * 5, 1, "expected")
-        self.refuse_points("\n".join(self.lines).encode("utf-16"), 1, "expected")
+        self.refuse_points("\n".join(self.lines).encode("utf-32"), 1, "UTF-32", "expected")
         high = bytes(range(128, 256))
         self.refuse_points(b"\n".join([HEADER.encode(), high, high]), 2, "expected")
         self.refuse_points("\n".join(self.lines).encode() + b"\n\0", 12, "not a text file")
@@ -185,7 +185,6 @@ class BadPoints(ProgramTest):
         self.refuse_points(self.replaced(4, "300,1.1,-3,0.01,1,7"), 4, "expected")
         self.refuse_points(self.replaced(4, "300,1.1,,0.01,1"), 4, "expected")
         self.refuse_points(self.replaced(4, "300;1.1;-3;0.01;1"), 4, "expected")
-        self.refuse_points(self.replaced(4, "300,1.1,-3,0.01,1,"), 4, "expected")
 
     def test_text_where_a_number_should_be(self):
         for column in range(5):
@@ -212,19 +211,14 @@ class BadPoints(ProgramTest):
                 with self.subTest(value=value, column=column):
                     self.refuse_points(self.replaced(6, ",".join(cells)), 6, "expected")
 
-    def test_order_of_frequencies(self):
-        self.refuse_points(self.replaced(5, self.lines[2]), 5, "expected")
-        self.refuse_points(self.replaced(5, self.lines[3]), 5, "expected")
-        self.refuse_points([*self.lines, "", "# and again", *self.lines[1:]], 14, "expected")
-
     def test_line_numbers_count_every_line(self):
         self.refuse_points(["# a", "", *self.replaced(4, "x"), "y"], 6, "expected", end="\r\n")
 
     def test_count_of_points(self):
         self.refuse_points(self.lines[:2], None, "3", "expected")
         self.refuse_points(self.lines[:3], None, "3", "expected")
-        frequencies = [100.0 + i for i in range(65)]
-        self.refuse_points(table(second_order(), frequencies), 66, "64", "expected")
+        frequencies = [100.0 + i for i in range(1025)]
+        self.refuse_points(table(second_order(), frequencies), 1026, "1024", "expected")
 
     def test_inverted_polarity(self):
         response = second_order()
@@ -241,10 +235,6 @@ class BadPoints(ProgramTest):
     def test_not_identifiable(self):
         frequencies = [1000.0, 1000.0 + 2**-40, 1000.0 + 2**-39]
         self.refuse_points(table(second_order(), frequencies), None, "do not determine", "add frequencies")
-
-    def test_uncertainties_that_leave_what_a_device_may_be(self):
-        lines = [line.replace(",0.01,1.0", ",0.4,40") for line in table(second_order(damping=0.001), FREQUENCIES[:7])]
-        self.refuse_points(lines, None, "uncertaint")
 
 
 class GoodModel(ProgramTest):
@@ -585,12 +575,16 @@ class Bench(ProgramTest):
         self.assertEqual((results["model"], results["energy"], results["bench"]["points"]), (None, None, 0))
         self.assertEqual((self.directory / "out/frequency_response.csv").read_text(), HEADER + "\n")
 
-    def test_fault_replaces_files_of_an_earlier_run(self):
-        self.succeed("report", *QUICK, "--out", "out")
-        (self.directory / "out/notes.txt").write_text("mine")
-        self.assertEqual(self.run_program("report", "--bench-fault", "late-block", "--out", "out").returncode, 3)
-        files = ["frequency_response.csv", "notes.txt", "report.html", "report.txt", "results.json"]
+    def test_fault_keeps_a_complete_report_of_an_earlier_run(self):
+        report = self.succeed("report", *QUICK, "--out", "out")
+        before = sorted(os.listdir(self.directory / "out"))
+        result = self.run_program("report", "--bench-fault", "late-block", "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "begin with failed_")
+        names = ["frequency_response.csv", "report.html", "report.txt", "results.json"]
+        files = sorted(before + [f"failed_{name}" for name in names])
         self.assertEqual(sorted(os.listdir(self.directory / "out")), files)
+        self.assertEqual((self.directory / "out/report.txt").read_text(), report)
 
     def test_levels_that_cannot_be_reached(self):
         result = self.run_program("report", "--level", "19")
@@ -708,13 +702,14 @@ class Files(ProgramTest):
         (self.directory / "out/notes.txt").write_text("mine")
         report = self.succeed("report", *MODEL, *QUICK, "--out", "out")
         self.assertEqual((self.directory / "out/report.txt").read_text(), report)
-        self.assertEqual(sorted(os.listdir(self.directory / "out")), sorted([*FILES, "notes.txt"]))
+        self.assertEqual(sorted(os.listdir(self.directory / "out")),
+                         sorted([*FILES, "frequency_response.1.csv", "notes.txt"]))
 
     def test_directories_that_cannot_be_written(self):
         self.write(["x"], "file")
         (self.directory / "taken").mkdir()
         (self.directory / "taken/signal.csv").mkdir()
-        for directory in ["file", "file/out", "missing/out", "/proc/emax", "o" * 300]:
+        for directory in ["file", "file/out", "/proc/emax", "o" * 300]:
             with self.subTest(directory):
                 arguments = ["report", *MODEL, *QUICK, "--out", directory]
                 self.refuse(arguments, f"emax: --out: {directory[:200]}", "expected a directory")

@@ -7,6 +7,10 @@ emax_leave_out(test_elementary_accuracy)
 emax_leave_out(test_certificate_grid)
 emax_leave_out(test_energy_certificate)
 
+# Hundreds of fits.
+emax_leave_out(test_fit_diagnosis)
+emax_leave_out(test_fit_judgement Magnitudes.UncertaintiesAreThoseOfRepeatedFits)
+
 # What they expect takes a long double, or a __float128, that is wider than double.
 emax_leave_out(test_decimal DecimalParse.ExactMiddlesBetweenNeighbours)
 emax_leave_out(test_frequency_response InverseCovariance.AgainstDifferences)

@@ -98,6 +98,14 @@ bool FrequencyResponse::has_common() const noexcept {
   return false;
 }
 
+std::size_t FrequencyResponse::known_phases() const noexcept {
+  std::size_t known = 0;
+  for (const ResponsePoint& point : points()) {
+    known += is_phase_known(point) ? 1U : 0U;
+  }
+  return known;
+}
+
 Complex inverse_response(const ResponsePoint& point) noexcept {
   return inverse_of(point.amplitude, point.phase_rad);
 }

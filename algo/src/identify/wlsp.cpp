@@ -5,6 +5,7 @@
 #include "emax/base/distributions.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
+#include "emax/identify/magnitude_fit.hpp"
 
 namespace emax {
 namespace {
@@ -14,6 +15,8 @@ constexpr std::size_t kMinPoints = 3;
 // A column whose part across the others is smaller than this share of it is dependent: rounding in
 // the rotations leaves about 1e-15.
 constexpr double kDependent = 1e-12;
+
+double square(double x) noexcept { return x * x; }
 
 bool all_finite(const double (&values)[3]) noexcept {
   return is_finite(values[0]) && is_finite(values[1]) && is_finite(values[2]);
@@ -80,13 +83,20 @@ Status Wlsp::fit(const FrequencyResponse& response) noexcept {
   if (status != Status::kOk) {
     return status;
   }
+  if (response_.known_phases() < response_.size()) {
+    return solve_without_phases();
+  }
+  return factor_points() == Status::kOk ? solve() : reject(Status::kNotIdentifiable);
+}
+
+Status Wlsp::factor_points() noexcept {
   for (std::size_t i = 0; i < response_.size(); ++i) {
     factors_[i] = inverse_cholesky(response_.points()[i]);
     if (!(factors_[i].re_re > 0.0) || !(factors_[i].im_im > 0.0)) {
-      return reject(Status::kNotIdentifiable);
+      return Status::kNotIdentifiable;
     }
   }
-  return solve();
+  return Status::kOk;
 }
 
 Status Wlsp::fit(const FrequencyResponse& response,
@@ -113,6 +123,7 @@ Status Wlsp::load(const FrequencyResponse& response) noexcept {
   response_ = response;
   has_common_ = response.has_common();
   max_frequency_hz_ = response_.points()[response_.size() - 1].frequency_hz;
+  held_damping_ = 0.0;
   fit_ = WlspFit();
   return Status::kOk;
 }
@@ -154,6 +165,7 @@ Status Wlsp::solve() noexcept {
   fit_.mu[0] = scaled[0];
   fit_.mu[1] = scaled[1] / w_max;
   fit_.mu[2] = scaled[2] / w_max / w_max;
+  set_mu_uncertainties();
   fit_.dof = static_cast<std::uint32_t>(2 * response_.size() - kWlspParameters);
   fit_.common_effect = common_effect_of(scaled_);
   fit_.chi2 = chi_square_of_scaled(scaled_, fit_.common_effect);
@@ -179,6 +191,151 @@ Status Wlsp::solve() noexcept {
   return fit_.status;
 }
 
+void Wlsp::set_mu_uncertainties() noexcept {
+  const double w_max = kTwoPi * max_frequency_hz_;
+  double scale = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double row[3] = {};
+    row[k] = 1.0;
+    solve_transposed(r_, row);
+    fit_.u_mu[k] = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) / scale;
+    scale *= w_max;
+  }
+}
+
+Status Wlsp::solve_without_phases() noexcept {
+  double scaled[3] = {};
+  Status status = begin_without_phases(scaled);
+  if (status != Status::kOk) {
+    return status;
+  }
+  status = iterate_phases(scaled);
+  if (status == Status::kOk || status == Status::kNotPhysical || status == Status::kOverdamped) {
+    finish_without_phases();
+  }
+  return fit_.status;
+}
+
+// A model to take the first phases from, and whether the damping is held.
+Status Wlsp::begin_without_phases(double (&scaled)[3]) noexcept {
+  const MagnitudeFit fit = fit_magnitudes(response_);
+  const bool has_no_phase = response_.known_phases() == 0;
+  const bool is_given = given_damping_ >= kMinDamping && given_damping_ < 1.0;
+  if (has_no_phase && !fit.is_found) {
+    return reject(Status::kNotIdentifiable);
+  }
+  const bool has_damping =
+      fit.has_frequency() && fit.damping2 - 2.0 * fit.u_damping2 >= kMinDamping * kMinDamping;
+  if (has_no_phase && !has_damping) {
+    if (!fit.has_frequency() && !is_given) {
+      return sensitivity_alone(fit.a[0], fit.u[0]);
+    }
+    const double fitted = sqrt(fit.damping2 > 0.0 ? fit.damping2 : 0.0);
+    held_damping_ = is_given ? given_damping_ : fitted > kMinDamping ? fitted : kMinDamping;
+    is_damping_given_ = is_given;
+  }
+  const bool has_start = fit.is_found && fit.a[0] > 0.0 && fit.has_frequency();
+  const double a0 = fit.a[0] > 0.0 ? fit.a[0] : 1.0 / square(response_.points()[0].amplitude);
+  // Without a start of its own the resonance is put at twice the highest frequency.
+  const double a2 = has_start ? fit.a[2] : a0 / 16.0;
+  const double least = has_no_phase ? kMinDamping : 0.01;
+  const double free = sqrt(fit.damping2 > least * least ? fit.damping2 : least * least);
+  scaled[0] = sqrt(a0);
+  scaled[2] = sqrt(a2);
+  scaled[1] = (held_damping_ > 0.0 ? held_damping_ : free) * sqrt(scaled[0] * scaled[2]);
+  damping2_ = has_no_phase ? fit.damping2 : 0.0;
+  u_damping2_ = has_no_phase ? fit.u_damping2 : 0.0;
+  return Status::kOk;
+}
+
+Status Wlsp::iterate_phases(double (&scaled)[3]) noexcept {
+  constexpr int kIterations = 60;
+  constexpr double kAtRest = 1e-13;
+  for (int i = 0; i < kIterations; ++i) {
+    take_phases_from(scaled);
+    aim_hold(scaled);
+    if (factor_points() != Status::kOk) {
+      return reject(Status::kNotIdentifiable);
+    }
+    const Status status = solve();
+    if (status != Status::kOk && status != Status::kNotPhysical && status != Status::kOverdamped) {
+      return status;
+    }
+    double change = 0.0;
+    double size = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      change += abs(scaled_[k] - scaled[k]);
+      size += abs(scaled_[k]);
+      scaled[k] = scaled_[k];
+    }
+    if (change <= kAtRest * size) {
+      return status;
+    }
+    if (held_damping_ > 0.0 && !(scaled[0] > 0.0 && scaled[2] > 0.0)) {
+      return reject(Status::kNotIdentifiable);
+    }
+  }
+  return reject(Status::kNotIdentifiable);
+}
+
+void Wlsp::take_phases_from(const double (&scaled)[3]) noexcept {
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    const ResponsePoint& point = response_.points()[i];
+    if (!is_phase_known(point)) {
+      const double w = point.frequency_hz / max_frequency_hz_;
+      response_.set_unknown_phase(i, -atan2(2.0 * w * scaled[1], scaled[0] - w * w * scaled[2]));
+    }
+  }
+}
+
+// mu2 = beta sqrt(mu1 mu3) to first order about the last estimates; homogeneous, so without a
+// constant.
+void Wlsp::aim_hold(const double (&scaled)[3]) noexcept {
+  if (!(held_damping_ > 0.0)) {
+    return;
+  }
+  const double ratio = sqrt(scaled[2] / scaled[0]);
+  hold_[0] = -0.5 * held_damping_ * ratio;
+  hold_[1] = 1.0;
+  hold_[2] = -0.5 * held_damping_ / ratio;
+}
+
+void Wlsp::finish_without_phases() noexcept {
+  const bool is_held = held_damping_ > 0.0;
+  const std::size_t unknown = response_.size() - response_.known_phases();
+  const std::size_t equations = 2 * response_.size() - unknown + (is_held ? 1U : 0U);
+  fit_.dof =
+      static_cast<std::uint32_t>(equations > kWlspParameters ? equations - kWlspParameters : 0U);
+  fit_.birge_ratio = fit_.dof == 0 ? 0.0 : sqrt(fit_.chi2 / static_cast<double>(fit_.dof));
+  fit_.unknown_phases = static_cast<std::uint32_t>(unknown);
+  fit_.damping2 = damping2_;
+  fit_.u_damping2 = u_damping2_;
+  fit_.is_damping_held = is_held;
+  fit_.is_damping_given = is_held && is_damping_given_;
+  if (is_held && fit_.status == Status::kOk) {
+    fit_.model.damping = held_damping_;
+    fit_.u_damping = 0.0;
+    for (std::size_t i = 0; i < kWlspParameters; ++i) {
+      fit_.covariance[i][2] = 0.0;
+      fit_.covariance[2][i] = 0.0;
+    }
+  }
+}
+
+// f0 may be anywhere above the points: `judge()` reads that from mu3 = 0 with an uncertainty.
+Status Wlsp::sensitivity_alone(double a0, double u_a0) noexcept {
+  if (!(a0 > 2.0 * u_a0)) {
+    return reject(Status::kNotIdentifiable);
+  }
+  fit_ = WlspFit();
+  fit_.status = Status::kNotPhysical;
+  fit_.unknown_phases = static_cast<std::uint32_t>(response_.size());
+  fit_.mu[0] = sqrt(a0);
+  fit_.u_mu[0] = 0.5 * u_a0 / fit_.mu[0];
+  fit_.u_mu[2] = fit_.mu[0] / square(kTwoPi * max_frequency_hz_);
+  return fit_.status;
+}
+
 bool Wlsp::triangularise(double (&rhs)[3]) noexcept {
   for (auto& row : r_) {
     row[0] = row[1] = row[2] = 0.0;
@@ -193,6 +350,13 @@ bool Wlsp::triangularise(double (&rhs)[3]) noexcept {
     }
     rotate_in(r_, rhs, real, b.re);
     rotate_in(r_, rhs, imaginary, b.im);
+  }
+  if (held_damping_ > 0.0) {
+    // Heavy enough to hold, light enough to leave digits to the rest.
+    constexpr double kWeight = 1e4;
+    const double weight = kWeight * abs(r_[0][0]);
+    double row[3] = {weight * hold_[0], weight * hold_[1], weight * hold_[2]};
+    rotate_in(r_, rhs, row, 0.0);
   }
   return all_finite(rhs);
 }
@@ -211,6 +375,12 @@ bool Wlsp::triangularise_with_common(double (&rhs)[3]) noexcept {
     common_squares_ += norm(c);
     rotate_in(r, full_rhs, real, b.re);
     rotate_in(r, full_rhs, imaginary, b.im);
+  }
+  if (held_damping_ > 0.0) {
+    constexpr double kWeight = 1e4;
+    const double weight = kWeight * sqrt(r[0][1] * r[0][1] + r[1][1] * r[1][1]);
+    double row[4] = {0.0, weight * hold_[0], weight * hold_[1], weight * hold_[2]};
+    rotate_in(r, full_rhs, row, 0.0);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -317,7 +487,9 @@ double Wlsp::chi_square_of(const Accelerometer& model) const noexcept {
 
 Status WlspDraws::start(const Wlsp& fit, std::uint32_t draws,
                         const WichmannHill& generator) noexcept {
-  if (fit.result().status != Status::kOk) {
+  const bool has_device = fit.result().mu[0] > 0.0 && fit.result().u_sensitivity > 0.0;
+  const bool lacks_damping = fit.result().status == Status::kNotPhysical && has_device;
+  if (fit.result().status != Status::kOk && !lacks_damping) {
     return fit.result().status;
   }
   if (fit.response().size() == 0) {
@@ -375,7 +547,8 @@ bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
     ResponsePoint drawn = measured;
     drawn.amplitude += drawn.u_amplitude * normal.first;
     drawn.amplitude *= 1.0 + fit.response_.common()[i] * together;
-    drawn.phase_rad += drawn.u_phase_rad * normal.second;
+    // A phase that is the model's own is no observation, so it does not scatter.
+    drawn.phase_rad += is_phase_known(drawn) ? drawn.u_phase_rad * normal.second : 0.0;
     if (!(drawn.amplitude > 0.0)) {
       possible = false;  // The other points still take their numbers: each draw keeps its place in
                          // the sequence.

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <unistd.h>
 #include <vector>
 
@@ -31,6 +32,7 @@
 #include "desk/cli/value_text.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/rounding.hpp"
+#include "desk/files/safe_directory.hpp"
 #include "desk/files/text_file.hpp"
 
 namespace emax::desk {
@@ -70,10 +72,12 @@ bool take_effort(std::string_view text, double& effort_s) {
 Syntax syntax_of(CertifyOptions& options) {
   ReportOptions& report = options.report;
   Syntax syntax;
-  for (const char* name : {"points", "model", "order", "cutoff", "gain", "time", "limit"}) {
-    syntax.options.push_back(report_option(report, name));
+  for (const char* name :
+       {"points", "model", "reference-uncertainty", "uncertainty", "input-units", "channel-delay",
+        "invert", "damping", "order", "cutoff", "gain", "time", "limit"}) {
+    const bool is_order = std::string_view(name) == "order";
+    syntax.options.push_back(report_option(report, name, is_order ? "order, 2 to 15" : nullptr));
   }
-  syntax.options[2].help = "order, 2 to 15";
   syntax.options.push_back(report_option(report, "json",
                                          "{E,bound,gap,cells,multipliers,nodes,seconds} on\n"
                                          "standard output instead of text"));
@@ -119,6 +123,11 @@ class CertificateFile final {
 
   // Before the long work.
   Problem open() {
+    if (!path_.empty() && is_irregular(path_)) {
+      return bad_input(
+          "--out: " + printable(path_) +
+          ": not a regular file; expected the name of a new file or of one to replace");
+    }
     file_ = path_.empty() ? nullptr : std::fopen(temporary().c_str(), "wbx");
     return file_ == nullptr && !path_.empty()
                ? bad_input("--out: " + printable(path_) + ": " + std::strerror(errno) +
@@ -137,8 +146,8 @@ class CertificateFile final {
     errno = 0;
     const bool closed = std::fclose(file_) == 0;
     file_ = nullptr;
-    const bool done =
-        sink.error() == 0 && closed && std::rename(temporary().c_str(), path_.c_str()) == 0;
+    const bool done = sink.error() == 0 && closed && sync_file(temporary()) &&
+                      !is_irregular(path_) && std::rename(temporary().c_str(), path_.c_str()) == 0;
     if (!done) {
       const int error = sink.error() != 0 ? sink.error() : errno;
       std::remove(temporary().c_str());
@@ -162,12 +171,13 @@ Problem find_energy(const ReportOptions& options, app::EvaluationResults& result
   if (options.points_path.empty()) {
     status = evaluation.start_from_model(options.device, options.settings, app::Goal::kEnergy);
   } else {
-    static FrequencyResponse points;
-    if (Problem problem =
-            read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+    static ImportedPoints imported;
+    if (Problem problem = read_points(options.points_path, options.import,
+                                      options.reference_uncertainty_percent, imported)) {
       return problem;
     }
-    status = evaluation.start_from_points(points, options.settings, app::Goal::kEnergy);
+    evaluation.give_damping(options.damping);
+    status = evaluation.start_from_points(imported.points, options.settings, app::Goal::kEnergy);
   }
   ConsoleProgress progress;
   while (status == Status::kOk && !evaluation.done() && !results.has_energy) {
@@ -362,8 +372,9 @@ Problem run_certify(Span<const std::string_view> arguments) {
   options.report.settings.trend_count = 0;
   static app::EvaluationResults evaluation;
   CertificateFile file(options.out_path);
-  Problem problem = find_energy(options.report, evaluation);
-  if (problem || (problem = file.open())) {
+  Problem problem = file.open();
+  problem = problem ? problem : find_energy(options.report, evaluation);
+  if (problem) {
     return problem;
   }
   const ModalModel model = evaluation.model;
@@ -391,13 +402,16 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.proven.energy_v2s = evaluation.energy_v2s();
   result.seconds = seconds_since(start);
   result.certificate_path = options.out_path;
-  if ((problem = file.write(result.proven))) {
-    return problem;
+  // What has been proven is printed, whatever becomes of the file.
+  const Problem unwritten = file.write(result.proven);
+  if (unwritten) {
+    result.certificate_path.clear();
   }
   FileSink sink(stdout);
   app::TextWriter out(sink);
   options.report.json ? write_json(result, out) : write_text(result, out);
-  return check_output(sink);
+  problem = check_output(sink);
+  return unwritten ? unwritten : problem;
 }
 
 std::string help_on_certify() {

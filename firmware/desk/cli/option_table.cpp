@@ -8,8 +8,11 @@
 #include <string>
 #include <string_view>
 
+#include "emax/base/capacity.hpp"
+
 #include "desk/cli/setting_options.hpp"
 #include "desk/cli/value_text.hpp"
+#include "desk/import/import_options.hpp"
 
 namespace emax::desk {
 
@@ -109,6 +112,11 @@ bool take_bench_fault(std::string_view text, ReportOptions& options) {
   return parsed.known;
 }
 
+bool take_damping(std::string_view text, ReportOptions& options) noexcept {
+  return take_number(text, options.damping) && is_within(options.damping, 1e-4, 1.0) &&
+         options.damping != 1.0;
+}
+
 using Take = bool (*)(std::string_view text, ReportOptions& options);
 
 // Options that are written down one below the other, with what they write to.
@@ -150,11 +158,12 @@ std::vector<Option> device_options(ReportOptions& options) {
   Builder builder(options, "The device");
   builder
       .add_text("points", "FILE", "the name of a CSV file, or -",
-                "measured points, 3 to 64 lines of CSV by frequency:\n"
-                "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
-                "amplitude in V/(m/s^2), a lag negative, expanded\n"
-                "uncertainties (k = 2), # starts a comment;\n"
-                "- reads standard input",
+                "measured points, 3 to " EMAX_TEXT_OF(
+                    EMAX_MAX_POINTS) " lines of a table:\n"
+                                     "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg;\n"
+                                     "amplitude in V/(m/s^2), a lag negative, expanded\n"
+                                     "uncertainties (k = 2); or with a header that names\n"
+                                     "columns and units; - reads standard input",
                 options.points_path)
       .add("model", "S,f0,beta[,uS,uf0,ubeta]", "",
            "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",
@@ -168,6 +177,44 @@ std::vector<Option> device_options(ReportOptions& options) {
            "all points; with --points it is taken to be within\n"
            "the uncertainty of each amplitude. 0.5 on the bench",
            take_reference);
+  return builder.options();
+}
+
+bool take_uncertainty(std::string_view text, ReportOptions& options) {
+  return take_uncertainty(text, options.import);
+}
+
+bool take_input_units(std::string_view text, ReportOptions& options) {
+  return take_input_units(text, options.import);
+}
+
+bool take_channel_delay(std::string_view text, ReportOptions& options) {
+  return take_channel_delay(text, options.import);
+}
+
+std::vector<Option> table_options(ReportOptions& options) {
+  Builder builder(options, kTableHeading);
+  builder
+      .add("uncertainty", "UA,UPHASE", "", kExpectedUncertaintyOption,
+           "expanded uncertainties (k = 2) of amplitude and phase,\n"
+           "such as 1%,1deg, for a table without columns of them",
+           take_uncertainty)
+      .add("input-units", "UNITS", "", kExpectedInputUnits,
+           "of columns whose header names none, such as mV/g or\n"
+           "kHz,mV/(m/s2),rad",
+           take_input_units)
+      .add("channel-delay", "SECONDS", "", kExpectedChannelDelay,
+           "known delay of the device's channel behind the\n"
+           "reference's; it is taken out of the phases",
+           take_channel_delay)
+      .add_switch("invert",
+                  "180 degrees are added to every phase: the polarity of\n"
+                  "the sensor is turned round",
+                  options.import.is_inverted)
+      .add("damping", "BETA", "", "a number from 0.0001 to below 1",
+           "damping, where the table has magnitudes only and does\n"
+           "not determine it",
+           take_damping);
   return builder.options();
 }
 
@@ -258,6 +305,7 @@ void append(std::vector<Option>& all, const std::vector<Option>& more) {
 
 std::vector<Option> report_options(ReportOptions& options) {
   std::vector<Option> all = device_options(options);
+  append(all, table_options(options));
   append(all, own_bench_options(options));
   append(all, sweep_setting_options(options.sweep));
   append(all, evaluation_options(options));

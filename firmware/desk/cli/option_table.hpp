@@ -8,6 +8,9 @@
 
 namespace emax::desk {
 
+/// Heading of all options that say what a table of points does not.
+inline constexpr const char kTableHeading[] = "Of the table that --points names";
+
 /// @returns All options that take part in a report, in the order of the help. They write to
 /// `options`, which has to outlive them.
 std::vector<Option> report_options(ReportOptions& options);

@@ -28,6 +28,11 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
       return excluded(given, source);
     }
   }
+  for (const Given& given : all) {
+    if (given.option->heading == kTableHeading && options.points_path.empty()) {
+      return bad_input("--" + given.option->name + ": no table; expected --points FILE with it");
+    }
+  }
   if (has_model && options.reference_uncertainty_percent != 0.0) {
     return bad_input(
         "--reference-uncertainty: excluded by --model; expected with points, since the "

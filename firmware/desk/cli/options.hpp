@@ -15,6 +15,7 @@
 
 #include "desk/cli/option.hpp"
 #include "desk/cli/problem.hpp"
+#include "desk/import/import_points.hpp"
 
 namespace emax::desk {
 
@@ -22,6 +23,8 @@ namespace emax::desk {
 /// neither, from a measurement on the simulated bench.
 struct ReportOptions {
   app::Settings settings = app::kDefaultSettings;
+  ImportOptions import;     ///< What is said of the table in `points_path`.
+  double damping = 0.0;     ///< For a table of magnitudes that leaves it open; 0 for none.
   std::string points_path;  ///< "-" for standard input; empty for none.
   std::string model_text;   ///< As it was given; empty for none.
   app::Device device = {};  ///< What `model_text` says.

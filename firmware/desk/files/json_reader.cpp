@@ -1,9 +1,13 @@
 // JSON text as a tree of values, by recursive descent of limited depth.
 #include "desk/files/json_reader.hpp"
 
+#include <set>
+
 #include "emax/base/decimal.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/span.hpp"
+
+#include "desk/cli/stop_request.hpp"
 
 namespace emax::desk {
 
@@ -99,6 +103,9 @@ class JsonParser final {
   }
 
   bool take_value(JsonValue& value, std::size_t depth) {
+    if (stop_requested()) {
+      return fail("the reading was stopped");
+    }
     skip_space();
     switch (next()) {
       case '{':
@@ -124,6 +131,7 @@ class JsonParser final {
 
   bool take_object(JsonValue& value, std::size_t depth) {
     value.kind_ = JsonValue::Kind::kObject;
+    std::set<std::string> names;
     ++at_;
     skip_space();
     if (take('}')) {
@@ -135,10 +143,8 @@ class JsonParser final {
       if (!take_string(member.first)) {
         return false;
       }
-      for (const JsonValue::Member& earlier : value.members_) {
-        if (earlier.first == member.first) {
-          return fail("a name for the second time");
-        }
+      if (!names.insert(member.first).second) {
+        return fail("a name for the second time");
       }
       skip_space();
       if (!take(':')) {

@@ -50,7 +50,8 @@ struct JsonError {
 };
 
 /// Reads a whole text, which is nested at most kMaxJsonDepth deep. Of two members with the same
-/// name the second is an error. The work is proportional to the text times the members per object.
+/// name the second is an error. The work is proportional to the text, but for a logarithm of the
+/// members per object. A stop request ends it with an error.
 ///
 /// @param[out] value Of no use after an error.
 JsonError parse_json(std::string_view text, JsonValue& value);

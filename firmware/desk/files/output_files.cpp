@@ -42,6 +42,23 @@ Problem bad_directory(const std::string& directory, const char* problem) {
                    "; expected a directory that can be written to, or a new one in one that can");
 }
 
+// Of hidden directories: of a run that works, and of one whose files are being moved.
+constexpr char kHidden[] = ".emax.";
+constexpr char kCommitted[] = ".emax-complete";
+constexpr char kDropped[] = ".dropped";  // In it: the names of files to remove.
+
+// What is no regular file is not ours to replace.
+Problem check_replaceable(const std::string& path) {
+  if (is_directory(path)) {
+    return cannot_write(path, EISDIR);
+  }
+  return desk::is_irregular(path)
+             ? bad_input("--out: " + printable(path) +
+                         ": not a regular file; expected a directory without a device, FIFO or "
+                         "link of this name")
+             : Problem{};
+}
+
 bool is_complete_svg(const std::string& svg) {
   constexpr std::string_view kEnd = "</svg>";
   const std::size_t last = svg.find_last_not_of(" \n");
@@ -67,22 +84,17 @@ Problem describe(const GnuplotRun& run, const std::string& directory, const char
 }  // namespace
 
 OutputFiles::~OutputFiles() {
-  for (const std::string& name : written_) {
-    std::remove(temporary_path_of(name).c_str());
-  }
   if (!temporary_directory_.empty()) {
-    rmdir(temporary_directory_.c_str());
+    desk::remove_flat(temporary_directory_);
   }
-  if (directory_is_new_) {
-    rmdir(directory_.c_str());
+  for (auto directory = made_.rbegin(); directory != made_.rend(); ++directory) {
+    rmdir(directory->c_str());
   }
 }
 
 Problem OutputFiles::open(const std::string& directory) {
   directory_ = directory;
-  if (mkdir(directory.c_str(), 0777) == 0) {
-    directory_is_new_ = true;
-  } else if (errno != EEXIST) {
+  if (!desk::make_directories(directory, made_)) {
     return bad_directory(directory, std::strerror(errno));
   }
   if (!is_directory(directory)) {
@@ -91,24 +103,42 @@ Problem OutputFiles::open(const std::string& directory) {
   if (access(directory.c_str(), W_OK | X_OK) != 0) {
     return bad_directory(directory, std::strerror(errno));
   }
+  clear_leftovers();
   return {};
+}
+
+// A hidden directory that nobody holds a lock of belongs to a run that was killed.
+void OutputFiles::clear_leftovers() {
+  desk::DirectoryLock lock;
+  if (!lock.take(directory_)) {
+    return;
+  }
+  (void)finish_moves(path_of(kCommitted));
+  for (const std::string& name : desk::names_in(directory_, kHidden)) {
+    desk::DirectoryLock left;
+    if (left.try_take(path_of(name))) {
+      desk::remove_flat(path_of(name));
+    }
+  }
 }
 
 Problem OutputFiles::make_temporary_directory() {
   if (!temporary_directory_.empty()) {
     return {};
   }
-  std::string path = path_of(".emax.XXXXXX");
-  if (mkdtemp(path.data()) == nullptr) {
+  desk::DirectoryLock lock;  // Nobody takes it for a leftover before it is locked.
+  std::string path = path_of(std::string(kHidden) + "XXXXXX");
+  if (!lock.take(directory_) || mkdtemp(path.data()) == nullptr) {
     return cannot_write(directory_, errno);
   }
   temporary_directory_ = path;
-  return {};
+  return temporary_lock_.take(path) ? Problem{} : cannot_write(directory_, errno);
 }
 
-Problem OutputFiles::add_file(const char* name, WriteText write, void* context) {
-  if (is_directory(path_of(name))) {
-    return cannot_write(path_of(name), EISDIR);
+Problem OutputFiles::add_file(const char* plain_name, WriteText write, void* context) {
+  const std::string name = prefix_ + plain_name;
+  if (Problem problem = check_replaceable(path_of(name))) {
+    return problem;
   }
   if (Problem problem = make_temporary_directory()) {
     return problem;
@@ -123,11 +153,18 @@ Problem OutputFiles::add_file(const char* name, WriteText write, void* context) 
   write(context, writer);
   sink.flush();
   errno = 0;
+  const bool is_synced = sink.error() == 0 && fsync(fileno(file)) == 0;
+  const int sync_error = is_synced ? 0 : errno;
   const bool closed = std::fclose(file) == 0;
-  if (sink.error() != 0 || !closed) {
-    return cannot_write(path_of(name), sink.error() != 0 ? sink.error() : errno);
+  if (sink.error() != 0 || !is_synced || !closed) {
+    const int error = sink.error() != 0 ? sink.error() : !is_synced ? sync_error : errno;
+    return cannot_write(path_of(name), error);
   }
   return {};
+}
+
+bool OutputFiles::has(const char* name) const {
+  return access(path_of(prefix_ + name).c_str(), F_OK) == 0;
 }
 
 void OutputFiles::keep(const std::string& name) {
@@ -137,8 +174,8 @@ void OutputFiles::keep(const std::string& name) {
 
 Problem OutputFiles::draw(const char* script, Span<const char* const> pictures, Problem& remark) {
   for (const char* picture : pictures) {
-    if (is_directory(path_of(picture))) {
-      return cannot_write(path_of(picture), EISDIR);
+    if (Problem problem = check_replaceable(path_of(picture))) {
+      return problem;
     }
   }
   GnuplotRun run = run_gnuplot(temporary_directory_, script);
@@ -149,7 +186,7 @@ Problem OutputFiles::draw(const char* script, Span<const char* const> pictures, 
     }
   }
   for (const char* picture : pictures) {
-    if (run.end == GnuplotEnd::kDone) {
+    if (run.end == GnuplotEnd::kDone && desk::sync_file(temporary_path_of(picture))) {
       keep(picture);
     } else {
       std::remove(temporary_path_of(picture).c_str());
@@ -169,18 +206,87 @@ std::string OutputFiles::content_of(const char* name) const {
 }
 
 Problem OutputFiles::commit() {
-  while (!written_.empty()) {
-    const std::string& name = written_.back();
-    if (std::rename(temporary_path_of(name).c_str(), path_of(name).c_str()) != 0) {
-      return cannot_write(path_of(name), errno);
+  if (Problem problem = make_temporary_directory()) {
+    return problem;
+  }
+  for (const std::string& name : written_) {
+    if (Problem problem = check_replaceable(path_of(name))) {
+      return problem;
     }
-    written_.pop_back();
-    directory_is_new_ = false;
+  }
+  std::FILE* const list = std::fopen(temporary_path_of(kDropped).c_str(), "wbx");
+  if (list == nullptr) {
+    return cannot_write(directory_, errno);
   }
   for (const std::string& name : dropped_) {
-    std::remove(path_of(name).c_str());
+    (void)std::fprintf(list, "%s\n", name.c_str());
   }
-  return {};
+  const bool is_synced = std::fflush(list) == 0 && fsync(fileno(list)) == 0;
+  const int error = errno;
+  if (std::fclose(list) != 0 || !is_synced) {
+    return cannot_write(directory_, is_synced ? errno : error);
+  }
+  desk::DirectoryLock lock;
+  if (!lock.take(directory_)) {
+    return cannot_write(directory_, errno);
+  }
+  if (!finish_moves(path_of(kCommitted))) {
+    return cannot_write(directory_, errno);
+  }
+  move_aside();
+  // From here on the run counts: whoever comes next finishes what is left of it.
+  if (std::rename(temporary_directory_.c_str(), path_of(kCommitted).c_str()) != 0 || !lock.sync()) {
+    return cannot_write(directory_, errno);
+  }
+  temporary_directory_.clear();
+  written_.clear();
+  made_.clear();
+  return finish_moves(path_of(kCommitted)) && lock.sync()
+             ? Problem{}
+             : fault(printable(directory_) + ": " + std::strerror(errno) +
+                     "; the next run with this --out moves the rest of the files");
+}
+
+// Moves the files of a complete run to where they belong; with the lock of the directory.
+//
+// @returns False, with errno, if a file cannot be moved; the next run tries again.
+bool OutputFiles::finish_moves(const std::string& from) {
+  if (!is_directory(from)) {
+    return true;
+  }
+  std::ifstream list(from + "/" + kDropped);
+  for (std::string name; std::getline(list, name);) {
+    if (name.find('/') == std::string::npos && !desk::is_irregular(path_of(name))) {
+      std::remove(path_of(name).c_str());
+    }
+  }
+  for (const std::string& name : desk::names_in(from, "")) {
+    if (name != kDropped && !desk::is_irregular(path_of(name)) &&
+        std::rename((from + "/" + name).c_str(), path_of(name).c_str()) != 0) {
+      return false;
+    }
+  }
+  desk::remove_flat(from);
+  return true;
+}
+
+void OutputFiles::move_aside() const {
+  constexpr int kMostNumbers = 10'000;
+  for (const std::string& name : set_aside_) {
+    const std::size_t dot = name.rfind('.');
+    for (int number = 1; number < kMostNumbers; ++number) {
+      const std::string other =
+          path_of(name.substr(0, dot) + "." + std::to_string(number) + name.substr(dot));
+      // link() never replaces: of two runs at once each gets a number of its own.
+      if (link(path_of(name).c_str(), other.c_str()) == 0) {
+        (void)unlink(path_of(name).c_str());
+        break;
+      }
+      if (errno != EEXIST) {
+        break;
+      }
+    }
+  }
 }
 
 }  // namespace emax::desk

@@ -8,11 +8,17 @@
 #include "emax/base/span.hpp"
 
 #include "desk/cli/problem.hpp"
+#include "desk/files/safe_directory.hpp"
 
 namespace emax::desk {
 
 /// Writes files into a hidden directory inside the one they are for, and moves them there at the
-/// end, so that neither an error nor Ctrl-C leaves part of a run behind.
+/// end, so that neither an error nor Ctrl-C leaves part of a run behind. The hidden directory is
+/// locked while its run lives; the next run removes those of runs that were killed. What is moved
+/// is on the disk before, and the moves of one run are complete before those of another begin: the
+/// hidden directory gets another name when it is complete, and the next run finishes the moves of
+/// one that was killed in the middle of them. Only regular files are replaced, never a device, a
+/// FIFO, a directory or what a symbolic link names.
 ///
 ///     if (Problem problem = files.open(directory)) ...     before the long work
 ///     if (Problem problem = files.add("report.txt", write)) ...
@@ -27,7 +33,8 @@ class OutputFiles final {
   OutputFiles& operator=(const OutputFiles&) = delete;
   ~OutputFiles();
 
-  /// Makes the directory if it is missing (not its parents), and checks that it can be written to.
+  /// Makes the directory and its parents if they are missing, checks that it can be written to, and
+  /// clears away what a killed run has left.
   Problem open(const std::string& directory);
 
   /// Writes one file.
@@ -48,9 +55,20 @@ class OutputFiles final {
   /// @returns What a file of this run holds, before `commit()`; empty if there is none.
   std::string content_of(const char* name) const;
 
+  /// @returns Whether the directory holds a file of this name.
+  bool has(const char* name) const;
+
+  /// Names of files added or dropped from now on begin with this, so that others are kept.
+  void set_prefix(const char* prefix) { prefix_ = prefix; }
+  const std::string& prefix() const noexcept { return prefix_; }
+
+  /// Has a file of an earlier run, which this run has none of, get a new name by `commit()`:
+  /// "table.1.csv" for "table.csv", or the next number that is free.
+  void set_aside(const char* name) { set_aside_.emplace_back(prefix_ + name); }
+
   /// Has a file of an earlier run removed by `commit()`, unless this run comes to add one of that
   /// name.
-  void drop(const char* name) { dropped_.emplace_back(name); }
+  void drop(const char* name) { dropped_.emplace_back(prefix_ + name); }
 
   /// Puts all files in place, over those of an earlier run.
   Problem commit();
@@ -65,12 +83,18 @@ class OutputFiles final {
   }
   Problem make_temporary_directory();
   void keep(const std::string& name);
+  void clear_leftovers();
+  bool finish_moves(const std::string& from);
+  void move_aside() const;
 
   std::string directory_;
   std::string temporary_directory_;   // Empty before the first file.
   std::vector<std::string> written_;  // Still in the temporary directory.
   std::vector<std::string> dropped_;
-  bool directory_is_new_ = false;
+  std::vector<std::string> set_aside_;
+  std::vector<std::string> made_;  // Directories that are new; none once there are files in them.
+  std::string prefix_;
+  desk::DirectoryLock temporary_lock_;
 };
 
 template <typename Write>

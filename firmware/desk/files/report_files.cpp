@@ -14,7 +14,7 @@ namespace emax::desk {
 
 namespace {
 
-// The tables; they need nothing but the evaluation.
+// The tables; they need nothing but the results.
 struct Table {
   const char* name;
   void (*write)(const app::EvaluationResults& results, app::TextWriter& out) noexcept;
@@ -32,7 +32,7 @@ constexpr Table kTables[] = {
 Problem add_tables(const app::EvaluationResults& results, OutputFiles& files) {
   for (const Table& table : kTables) {
     if (table.needs_points && results.source != app::Source::kPoints) {
-      files.drop(table.name);
+      files.set_aside(table.name);  // It may be the only record of a measurement.
       continue;
     }
     Problem problem =
@@ -128,15 +128,28 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   const auto points = [&](app::TextWriter& out) {
     write_measured_points_csv(*context.measurement, out);
   };
+  // A complete report, which alone has a signal, is worth more than what a fault leaves.
+  if (files.has("signal.csv")) {
+    files.set_prefix("failed_");
+  }
   Problem problem = files.add("report.txt", text);
   problem = problem ? problem : files.add("results.json", json);
   problem = problem ? problem : files.add("report.html", page);
   problem = problem ? problem : files.add("frequency_response.csv", points);
+  return problem ? problem : files.commit();
+}
+
+Problem write_sensitivity_files(const app::EvaluationResults& results,
+                                const app::ReportContext& context, OutputFiles& files) {
+  Problem problem = files.add(
+      "report.txt", [&](app::TextWriter& out) { write_sensitivity_report(results, context, out); });
+  problem = problem ? problem : files.add("results.json", [&](app::TextWriter& out) {
+    write_sensitivity_json(results, context, out);
+  });
   for (const Table& table : kTables) {
-    if (!table.needs_points) {
-      files.drop(table.name);
-    }
+    files.drop(table.name);
   }
+  files.drop("report.html");
   drop_pictures(files);
   return problem ? problem : files.commit();
 }

@@ -23,4 +23,9 @@ Problem write_files(const app::EvaluationResults& results, const app::ReportCont
 Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,
                           OutputFiles& files);
 
+/// The files of points that determine the sensitivity alone: report.txt and results.json. What an
+/// earlier run has left of the others goes.
+Problem write_sensitivity_files(const app::EvaluationResults& results,
+                                const app::ReportContext& context, OutputFiles& files);
+
 }  // namespace emax::desk

@@ -11,6 +11,7 @@
 #include "emax/base/elementary.hpp"
 
 #include "desk/cli/console.hpp"
+#include "desk/cli/stop_request.hpp"
 #include "desk/files/json_reader.hpp"
 #include "desk/files/text_file.hpp"
 
@@ -218,6 +219,9 @@ Problem parse_result(const std::string& path, const std::string& file, JsonValue
     return problem;
   }
   const JsonError error = parse_json(text, root);
+  if (stop_requested()) {
+    return stopped();
+  }
   if (error.problem != nullptr) {
     return bad_input(file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) +
                      ": " + error.problem + "; " + kExpectation);

@@ -117,6 +117,15 @@ std::string percentage(double percent, double expanded) {
   });
 }
 
+std::string range_of(const EvaluationResults& results) {
+  if (!results.has_cut_range) {
+    return "not found";
+  }
+  const EnergyFormat format(results.cut_high_v2s, 0.0);
+  return format.number(results.cut_low_v2s) + " to " + format.number(results.cut_high_v2s) +
+         format.unit();
+}
+
 double expanded(const app::EnergyUncertainty& known) {
   return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
 }
@@ -157,6 +166,10 @@ void append_uncertainty(std::string& html, const EvaluationResults& results) {
   const EnergyFormat format(energy, known.exists() ? known.u_v2s : 0.0);
   append_figure(html, "", std::string(name) + " at the estimates, E",
                 format.number(energy) + format.unit());
+  if (results.is_damping_open()) {
+    append_figure(html, "", "Range of E, as the points leave the damping open", range_of(results));
+    return;
+  }
   if (!known.exists()) {
     append_figure(html, "", "Standard uncertainty u(E)",
                   results.has_uncertainty() ? "none: the draws are no devices"

@@ -23,6 +23,7 @@
 #include "desk/files/report_files.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
+#include "desk/report/fit_causes.hpp"
 
 namespace emax::desk {
 
@@ -70,8 +71,15 @@ Problem describe(const app::EvaluationResults& evaluation, const ReportOptions& 
   app::TextWriter writer(sentence);
   write_failure(evaluation, writer);
   const std::string who = culprit(failure, options);
-  const std::string line =
+  std::string line =
       who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
+  if (is_inverted && !options.points_path.empty()) {
+    line += "; --invert adds 180 degrees to every phase";
+  }
+  if (failure.stage == app::Stage::kFitDraws) {
+    const std::string cause = cause_of(evaluation.fit);
+    line += cause.empty() ? "" : "; " + in_line(cause);
+  }
   // What the bench gave is no input of the user's.
   return who == "measurement" ? fault(line) : bad_input(line);
 }
@@ -83,7 +91,7 @@ struct Results {
 };
 
 // Begins with what there is to begin with: a bench, a device or points.
-Problem start(const ReportOptions& options, BenchJob& job) {
+Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& imported) {
   if (options.measures()) {
     return job.start(options);
   }
@@ -91,12 +99,12 @@ Problem start(const ReportOptions& options, BenchJob& job) {
   if (!options.model_text.empty()) {
     sequencer.take(options.device);
   } else {
-    static FrequencyResponse points;
-    if (Problem problem =
-            read_points(options.points_path, options.reference_uncertainty_percent, points)) {
+    if (Problem problem = read_points(options.points_path, options.import,
+                                      options.reference_uncertainty_percent, imported)) {
       return problem;
     }
-    sequencer.take(points);
+    sequencer.take(imported.points);
+    sequencer.give_damping(options.damping);
   }
   return sequencer.evaluate(options.settings, app::Goal::kReport)
              ? describe(sequencer.evaluation(), options)
@@ -105,7 +113,7 @@ Problem start(const ReportOptions& options, BenchJob& job) {
 
 // Everything from the measurement to the results, with room for the trials' values, so that each is
 // computed once.
-Problem work(const ReportOptions& options, BenchJob& job) {
+Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& imported) {
   const std::uint32_t trials =
       options.settings.adaptive ? kMaxStoredTrials : options.settings.trials;
   const std::size_t room = std::min(trials, kMaxStoredTrials);
@@ -120,7 +128,7 @@ Problem work(const ReportOptions& options, BenchJob& job) {
     sequencer.lend_trial_pieces(Span<TrialPiece>(pieces.get(), EnergyTrials::kManyPieces));
   }
   ConsoleProgress progress;
-  Problem problem = start(options, job);
+  Problem problem = start(options, job, imported);
   if (!problem) {
     problem = job.run(progress);
   }
@@ -138,6 +146,10 @@ void write_results(const Results& results, app::TextWriter& out) {
   write_json(results.evaluation, results.context, out);
 }
 
+const char* or_null(const std::string& text) noexcept {
+  return text.empty() ? nullptr : text.c_str();
+}
+
 template <typename Write>
 Problem print(Write write) {
   FileSink sink(stdout);
@@ -149,12 +161,12 @@ Problem print(Write write) {
 // The files and the text of a measurement that has led to no result: what there is.
 Problem keep(const app::ReportContext& context, const app::EvaluationResults* refused, bool json,
              OutputFiles* files) {
-  if (Problem problem =
-          files != nullptr ? write_fault_files(context, refused, *files) : Problem{}) {
-    return problem;
-  }
-  return json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
-              : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+  const Problem problem =
+      files != nullptr ? write_fault_files(context, refused, *files) : Problem{};
+  const Problem printed =
+      json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
+           : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+  return problem ? problem : printed;
 }
 
 // The fault, and in the same line what became of what there is.
@@ -165,8 +177,31 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
   Problem problem = fault;
   if (const Problem kept = keep(results.context, refused, json, files)) {
     problem.line += kept.line.empty() ? "" : "; " + kept.line;
+  } else if (files != nullptr && !files->prefix().empty()) {
+    problem.line += "; its files begin with " + files->prefix() + ", complete ones are kept";
   }
   return problem;
+}
+
+bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
+  return !options.points_path.empty() && evaluation.stage == app::Stage::kFailed &&
+         evaluation.judgement.determined == Determined::kSensitivity;
+}
+
+// Points that determine S alone: its value is a result.
+Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) {
+  const auto text = [&](app::TextWriter& out) {
+    write_sensitivity_report(results.evaluation, results.context, out);
+  };
+  const auto object = [&](app::TextWriter& out) {
+    write_sensitivity_json(results.evaluation, results.context, out);
+  };
+  if (Problem problem = files != nullptr
+                            ? write_sensitivity_files(results.evaluation, results.context, *files)
+                            : Problem{}) {
+    return problem;
+  }
+  return json ? print(object) : print(text);
 }
 
 }  // namespace
@@ -182,26 +217,37 @@ Problem run_report(Span<const std::string_view> arguments) {
     return problem;
   }
   static BenchJob bench;
-  const Problem problem_of_work = work(options, bench);
+  static ImportedPoints imported;
+  const Problem problem_of_work = work(options, bench, imported);
+  const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const std::string points_name = name_of_input(options.points_path);
+  const bool has_table = !options.points_path.empty() && !problem_of_work;
+  const std::string cause = has_table ? cause_of(evaluation.fit) : "";
   const app::Measurement measurement = bench.measurement();
   const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
-                                      options.measures() ? &measurement : nullptr, options.labels(),
-                                      options.in_g};
-  const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
+                                      options.measures() ? &measurement : nullptr,
+                                      options.labels(),
+                                      options.in_g,
+                                      or_null(cause),
+                                      or_null(imported.understanding)};
   const Results results = {evaluation, context};
+  if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
+    return give_sensitivity(results, options.json, files);
+  }
   if (problem_of_work) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
     return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
   }
   Problem remark;
-  if (Problem problem =
-          files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{}) {
-    return problem;
+  const Problem unwritten =
+      files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
+  // A measurement that no file holds is at least printed.
+  if (unwritten && !(unwritten.status == ExitStatus::kFault && options.measures())) {
+    return unwritten;
   }
-  const Problem problem = options.json
-                              ? print([&](app::TextWriter& out) { write_results(results, out); })
-                              : print([&](app::TextWriter& out) { write_text(results, out); });
+  Problem problem = options.json ? print([&](app::TextWriter& out) { write_results(results, out); })
+                                 : print([&](app::TextWriter& out) { write_text(results, out); });
+  problem = unwritten ? unwritten : problem;
   return problem ? problem : remark;
 }
 

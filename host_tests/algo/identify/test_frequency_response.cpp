@@ -37,18 +37,18 @@ ComplexCovariance by_differences(const ResponsePoint& p) {
 TEST(FrequencyResponse, KeepsWhatItIsGiven) {
   FrequencyResponse response;
   EXPECT_EQ(response.size(), 0U);
-  for (int i = 1; i <= 64; ++i) {
+  for (std::size_t i = 1; i <= emax::kMaxPoints; ++i) {
     ResponsePoint point = kPoint;
-    point.frequency_hz = 10.0 * i;
+    point.frequency_hz = 10.0 * static_cast<double>(i);
     ASSERT_EQ(response.add(point), Status::kOk);
   }
-  ASSERT_EQ(response.points().size(), 64U);
+  ASSERT_EQ(response.points().size(), emax::kMaxPoints);
   EXPECT_EQ(response.points()[41].frequency_hz, 420.0);
   EXPECT_EQ(response.points()[41].u_phase_rad, kPoint.u_phase_rad);
   ResponsePoint next = kPoint;
-  next.frequency_hz = 1e4;
+  next.frequency_hz = 1e5;
   EXPECT_EQ(response.add(next), Status::kTooManyPoints);
-  EXPECT_EQ(response.size(), 64U);
+  EXPECT_EQ(response.size(), emax::kMaxPoints);
   response.clear();
   EXPECT_EQ(response.size(), 0U);
   EXPECT_EQ(response.add(kPoint), Status::kOk);

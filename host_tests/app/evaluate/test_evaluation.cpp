@@ -476,18 +476,53 @@ TEST(Evaluation, RefusesFits) {
   EXPECT_NEAR(evaluation.fit.result().mu[0], 1.0 / 1.00791, 1e-5);
 }
 
-TEST(Evaluation, UncertaintiesOfAPoorFitAreRefused) {
+FrequencyResponse with_uncertainties_times(double factor) {
   const FrequencyResponse good = synthetic_points(0.0);
   FrequencyResponse points;
   for (ResponsePoint point : good.points()) {
-    point.u_amplitude *= 1000.0;
-    point.u_phase_rad *= 1000.0;
+    point.u_amplitude *= factor;
+    point.u_phase_rad *= factor;
+    EXPECT_EQ(points.add(point), Status::kOk);
+  }
+  return points;
+}
+
+TEST(Evaluation, UncertaintiesOfAPoorFitLeaveTheDampingOpen) {
+  // u(beta) of the original points is about 0.001; 200 times that is most of beta itself.
+  const FrequencyResponse points = with_uncertainties_times(200.0);
+  const EvaluationResults& evaluation = evaluated(points, quick_settings());
+  ASSERT_EQ(evaluation.status(), Status::kOk);
+  EXPECT_TRUE(evaluation.is_damping_open());
+  EXPECT_FALSE(evaluation.has_monte_carlo);
+  ASSERT_TRUE(evaluation.has_cut_range);
+  EXPECT_LT(evaluation.cut_low_v2s, evaluation.energy_v2s());
+  EXPECT_GT(evaluation.cut_high_v2s, evaluation.energy_v2s());
+  EXPECT_TRUE(evaluation.is_of(points));
+  EXPECT_TRUE(evaluation.holds(emax::app::Goal::kReport, quick_settings()));
+}
+
+TEST(Evaluation, HopelessUncertaintiesDetermineNothing) {
+  EvaluationResults& evaluation = emax::test::shared_evaluation();
+  EXPECT_EQ(run_on(evaluation).start_from_points(with_uncertainties_times(70.0), quick_settings()),
+            Status::kOk);
+  EXPECT_EQ(
+      run_on(evaluation).start_from_points(with_uncertainties_times(1000.0), quick_settings()),
+      Status::kNotIdentifiable);
+  EXPECT_EQ(evaluation.failure.stage, Stage::kFitDraws);
+}
+
+TEST(Evaluation, PointsOfUnknownPhaseAreKnownAgain) {
+  FrequencyResponse points;
+  const FrequencyResponse measured = synthetic_points(0.0);
+  for (ResponsePoint point : measured.points()) {
+    point.phase_rad = 0.0;
+    point.u_phase_rad = emax::kUnknownPhase_rad;
     ASSERT_EQ(points.add(point), Status::kOk);
   }
-  EvaluationResults& evaluation = emax::test::shared_evaluation();
-  EXPECT_EQ(run_on(evaluation).start_from_points(points, quick_settings()),
-            Status::kInvalidArgument);
-  EXPECT_EQ(evaluation.failure.stage, Stage::kMonteCarlo);
+  const EvaluationResults& evaluation = evaluated(points, quick_settings());
+  ASSERT_EQ(evaluation.status(), Status::kOk);
+  EXPECT_TRUE(evaluation.is_of(points));
+  EXPECT_FALSE(evaluation.is_of(measured));
 }
 
 }  // namespace

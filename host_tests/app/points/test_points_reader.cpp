@@ -6,6 +6,7 @@
 #include <string>
 
 #include "emax/app/points/points_reader.hpp"
+#include "emax/base/capacity.hpp"
 
 #include "support/table1.hpp"
 
@@ -184,17 +185,20 @@ TEST(PointsReader, Order) {
 }
 
 TEST(PointsReader, HowMany) {
-  expect_error("", 0, "no points", "3 to 64");
+  constexpr const char* kRange = "3 to " EMAX_TEXT_OF(EMAX_MAX_POINTS);
+  expect_error("", 0, "no points", kRange);
   expect_error("\n\n# nothing\n", 0, "no points");
   expect_error(kHeader, 0, "no points");
-  expect_error("30,1,0,0.01,1\n", 0, "only 1 point", "3 to 64");
+  expect_error("30,1,0,0.01,1\n", 0, "only 1 point", kRange);
   expect_error("30,1,0,0.01,1\n40,1,0,0.01,1\n", 0, "only 2 points");
   std::string many;
-  for (int i = 1; i <= 64; ++i) {
+  const std::size_t most = emax::kMaxPoints;
+  for (std::size_t i = 1; i <= most; ++i) {
     many += std::to_string(i) + ",1,0,0.01,1\n";
   }
-  expect_points(many, 64);
-  expect_error(many + "65,1,0,0.01,1\n", 65, "65", "3 to 64");
+  expect_points(many, most);
+  const std::string next = std::to_string(most + 1);
+  expect_error(many + next + ",1,0,0.01,1\n", most + 1, "one point more than", kRange);
 }
 
 TEST(PointsReader, NotText) {

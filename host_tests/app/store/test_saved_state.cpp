@@ -417,19 +417,20 @@ TEST(SavedIdentification, WhatCannotBeIsRefused) {
                              correlate(0.6, 0.8, 0.0),
                              [](Identification& id) { id.dof = 125; },
                              [](Identification& id) { id.chi2 = 0.0; }};
-  const Change impossible[] = {
-      [](Identification& id) { id.device.estimate.sensitivity = 0.0; },
-      [](Identification& id) { id.device.estimate.damping = 1.0; },
-      [](Identification& id) { id.device.u.damping = 0.0005; },
-      [](Identification& id) { id.device.u.sensitivity = -0.003; },
-      [](Identification& id) { id.covariance[1][1] = -36.0; },
-      [](Identification& id) { id.covariance[2][2] = 0.0; },
-      [](Identification& id) { id.chi2 = -1.0; }, [](Identification& id) { id.dof = 129; },
-      [nan](Identification& id) { id.covariance[2][0] = nan; },
-      [](Identification& id) { id.source = static_cast<Source>(2); },
-      // A correlation above 1; three that exclude one another.
-      correlate(1.001, 0.0, 0.0), correlate(0.0, -1.001, 0.0), correlate(0.0, 0.0, 1.001),
-      correlate(0.9, 0.9, -0.9), correlate(1.0, 1.0, 0.0)};
+  const Change impossible[] = {[](Identification& id) { id.device.estimate.sensitivity = 0.0; },
+                               [](Identification& id) { id.device.estimate.damping = 1.0; },
+                               [](Identification& id) { id.device.u.damping = 0.0005; },
+                               [](Identification& id) { id.device.u.sensitivity = -0.003; },
+                               [](Identification& id) { id.covariance[1][1] = -36.0; },
+                               [](Identification& id) { id.covariance[2][2] = 0.0; },
+                               [](Identification& id) { id.chi2 = -1.0; },
+                               [](Identification& id) { id.dof = 2 * emax::kMaxPoints + 1; },
+                               [nan](Identification& id) { id.covariance[2][0] = nan; },
+                               [](Identification& id) { id.source = static_cast<Source>(2); },
+                               // A correlation above 1; three that exclude one another.
+                               correlate(1.001, 0.0, 0.0), correlate(0.0, -1.001, 0.0),
+                               correlate(0.0, 0.0, 1.001), correlate(0.9, 0.9, -0.9),
+                               correlate(1.0, 1.0, 0.0)};
   for (const Change& change : possible) {
     Identification id = measured();
     change(id);

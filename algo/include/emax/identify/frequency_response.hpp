@@ -24,6 +24,15 @@ struct ResponsePoint {
   double u_phase_rad = 0.0;  ///< Standard uncertainty in rad.
 };
 
+/// The standard uncertainty of a phase that was not measured, for tables of magnitudes alone.
+inline constexpr double kUnknownPhase_rad = 1e6;
+
+/// @returns Whether the phase says anything: its standard uncertainty is below pi/sqrt(3), that of
+/// an angle which may be any.
+constexpr bool is_phase_known(const ResponsePoint& point) noexcept {
+  return point.u_phase_rad < 1.8137993642342178;
+}
+
 /// @returns
 /// * kOk: All five numbers finite, frequency, amplitude and both uncertainties above 0.
 /// * kInvalidArgument: A number that is not finite, or a frequency or amplitude of zero or less.
@@ -61,6 +70,15 @@ class FrequencyResponse {
   /// @returns As above, and kInvalidArgument for a number of values other than `size()`.
   Status set_common(Span<const double> relative_u) noexcept;
 
+  /// Sets the phase of a point whose phase is unknown to that of a model.
+  ///
+  /// @param[in] index Below `size()`; a point whose phase is known stays as it is.
+  void set_unknown_phase(std::size_t index, double phase_rad) noexcept {
+    if (!is_phase_known(points_[index])) {
+      points_[index].phase_rad = phase_rad;
+    }
+  }
+
   void clear() noexcept { count_ = 0; }
 
   Span<const ResponsePoint> points() const noexcept {
@@ -69,6 +87,8 @@ class FrequencyResponse {
   /// The common relative standard uncertainties, one per point; zeros unless set.
   Span<const double> common() const noexcept { return Span<const double>(common_, count_); }
   bool has_common() const noexcept;
+  /// @returns The number of points whose phase is known.
+  std::size_t known_phases() const noexcept;
   std::size_t size() const noexcept { return count_; }
 
  private:

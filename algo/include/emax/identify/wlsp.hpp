@@ -21,17 +21,24 @@ inline constexpr std::size_t kWlspParameters = 3;
 
 struct WlspFit {
   Status status = Status::kOk;  ///< What `Wlsp::fit()` answered.
-  std::uint32_t dof = 0;        ///< Degrees of freedom, 2 points - 3.
+  std::uint32_t dof = 0;        ///< Equations (2 a point, 1 without a phase) minus 3.
   Accelerometer model;          ///< The estimates.
   double u_sensitivity =
       0.0;  ///< Standard uncertainties: the roots of the diagonal of `covariance`.
   double u_natural_frequency_hz = 0.0;
   double u_damping = 0.0;
   double covariance[kWlspParameters][kWlspParameters] = {};
-  double mu[3] = {};  ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
-  double chi2 = 0.0;  ///< Sum of the squares of the normalised residuals and of `common_effect`.
+  double mu[3] = {};    ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
+  double u_mu[3] = {};  ///< Their standard uncertainties.
+  double chi2 = 0.0;    ///< Sum of the squares of the normalised residuals and of `common_effect`.
   double common_effect = 0.0;  ///< The common effect found, in units of its standard uncertainty.
   double birge_ratio = 0.0;    ///< sqrt(chi2/dof): 1 where the model and the uncertainties hold.
+  std::uint32_t unknown_phases = 0;  ///< Points of which only the magnitude was fitted.
+  /// Magnitudes alone do not determine the damping: it was held, and u(beta) is zero.
+  bool is_damping_held = false;
+  bool is_damping_given = false;  ///< By `give_damping()`; else it is the nearest one permitted.
+  double damping2 = 0.0;          ///< beta^2 by magnitudes alone, where no phase is known; else 0.
+  double u_damping2 = 0.0;        ///< Its standard uncertainty.
 };
 
 /// Fits 1/K(jw) = mu1 + 2jw mu2 - w^2 mu3 to the points (Link, Taubner, Wabinski, Bruns, Elster,
@@ -52,6 +59,13 @@ struct WlspFit {
 /// scattered values pulls the estimates to one side (Peelle's puzzle). With the same u everywhere c
 /// is among the columns of M: estimates and chi-square stay what they were, u(S)^2 grows by (u
 /// S)^2, and nothing else changes.
+///
+/// A point whose phase is unknown (`is_phase_known()`) has one equation, that of its magnitude: its
+/// phase is taken from the model, and the fit is repeated until that no longer changes, which is
+/// least squares on 1/|K| by Gauss and Newton. `response()` then holds these phases. Where no phase
+/// is known, `fit_magnitudes()` says what to begin with and whether the damping is determined; if
+/// not, it is held at the value given or at the nearest one that a device may have, by an equation
+/// of its own with great weight.
 ///
 /// The object keeps a copy of the points it has fitted and their factors: 4.8 KiB. A fit takes
 /// about 300 multiplications per point, twice that and a half with a common part.
@@ -83,6 +97,12 @@ class Wlsp {
   /// is not positive definite.
   Status fit(const FrequencyResponse& response, Span<const ComplexCovariance> covariances) noexcept;
 
+  /// The damping to hold where no phase is known and the magnitudes do not determine it.
+  ///
+  /// @param[in] damping kMinDamping to below 1; everything else is as if none was given. Stays
+  ///                    until the next call.
+  void give_damping(double damping) noexcept { given_damping_ = damping; }
+
   /// @returns That of the last fit; all zero before the first.
   const WlspFit& result() const noexcept { return fit_; }
   /// @returns The points of the last fit; none if there were too few.
@@ -108,6 +128,15 @@ class Wlsp {
 
   Status load(const FrequencyResponse& response) noexcept;
   Status solve() noexcept;
+  Status solve_without_phases() noexcept;
+  Status begin_without_phases(double (&scaled)[3]) noexcept;
+  Status iterate_phases(double (&scaled)[3]) noexcept;
+  void take_phases_from(const double (&scaled)[3]) noexcept;
+  void aim_hold(const double (&scaled)[3]) noexcept;
+  void finish_without_phases() noexcept;
+  Status factor_points() noexcept;
+  Status sensitivity_alone(double a0, double u_a0) noexcept;
+  void set_mu_uncertainties() noexcept;
   Status reject(Status status) noexcept;
   bool triangularise(double (&rhs)[3]) noexcept;
   bool triangularise_with_common(double (&rhs)[3]) noexcept;
@@ -126,6 +155,12 @@ class Wlsp {
   double scaled_[3] = {};  // mu in units of the scaled frequency: mu1, mu2 w_max, mu3 w_max^2.
   double first_scaled_[3] = {};  // The same of the fit without the common part.
   double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
+  double given_damping_ = 0.0;
+  double damping2_ = 0.0;  // By magnitudes alone, with its uncertainty.
+  double u_damping2_ = 0.0;
+  double held_damping_ = 0.0;      // 0 while the damping is an unknown of the fit.
+  double hold_[3] = {};            // The equation that holds it: hold_ times scaled mu is 0.
+  bool is_damping_given_ = false;  // The one that is held.
   bool has_common_ = false;
   WlspFit fit_;
 };
@@ -158,7 +193,7 @@ class WlspDraws {
  public:
   /// Starts over.
   ///
-  /// @param[in] fit       A fit that answered kOk.
+  /// @param[in] fit       A fit that answered kOk, or kNotPhysical for a damping of zero or less.
   /// @param[in] draws     2 or more.
   /// @param[in] generator Seeded, and jumped ahead by the caller to where these draws belong.
   /// @returns

@@ -13,14 +13,29 @@ Status Evaluation::start_from_points(const FrequencyResponse& points, const Sett
   if (status != Status::kOk) {
     return status;
   }
-  const Status fit_status = results_.fit.fit(points);
+  const Status fit_status = take_fit(results_.fit.fit(points));
+  return fit_status == Status::kOk ? prepare(goal) : fit_status;
+}
+
+/// The device by what the points determine.
+Status Evaluation::take_fit(Status fit_status) noexcept {
+  const WlspFit& fit = results_.fit.result();
+  results_.judgement = judge(fit);
+  const FitJudgement& judgement = results_.judgement;
+  if (judgement.determined == Determined::kSensitivity) {
+    return fail(failure_of_sensitivity_alone());
+  }
+  if (judgement.determined == Determined::kAllButDamping) {
+    results_.device.estimate = judgement.device;
+    results_.device.u = {judgement.u_sensitivity, judgement.u_natural_frequency_hz, 0.0};
+    return Status::kOk;
+  }
   if (fit_status != Status::kOk) {
     return fail(failure_of_fit(fit_status));
   }
-  const WlspFit& fit = results_.fit.result();
   results_.device.estimate = fit.model;
   results_.device.u = {fit.u_sensitivity, fit.u_natural_frequency_hz, fit.u_damping};
-  return prepare(goal);
+  return Status::kOk;
 }
 
 Status Evaluation::start_from_model(const Device& device, const Settings& settings,
@@ -131,6 +146,9 @@ void Evaluation::go_on() noexcept {
     begin_energy();
   } else if (goal != Goal::kModel && !results_.is_bound_done) {
     begin_bound();
+  } else if (needs_trials(goal, results_.settings) && results_.is_damping_open() &&
+             !results_.is_cut_done) {
+    begin_cut_range();
   } else if (needs_trials(goal, results_.settings) && !results_.has_monte_carlo &&
              results_.has_uncertainty()) {
     begin_trials();
@@ -155,7 +173,7 @@ void Evaluation::stop() noexcept {
 }
 
 void Evaluation::drop_incomplete() noexcept {
-  if (!results_.has_monte_carlo) {
+  if (!results_.has_monte_carlo && !results_.is_cut_done) {
     results_.drop_trials();
   }
   if (!results_.has_trend) {

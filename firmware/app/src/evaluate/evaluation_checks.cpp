@@ -30,6 +30,9 @@ constexpr char kNormalTooWide[] =
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
     "below 1, because fit and grid follow the resonance.";
+constexpr char kOnlySensitivity[] =
+    "The points determine the sensitivity alone: they lie so far below the resonance that f0 and "
+    "the damping may be anything; measure nearer to it.";
 constexpr char kTooManyCellsBest[] =
     "The grid of 12 cells per period of the resonance (or of the cutoff, if that is higher) needs "
     "more than " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells for this time; shorten it.";
@@ -143,6 +146,10 @@ Failure check_goal(const EvaluationResults& results, const Settings& settings, G
 
 Failure failure_of_fit(Status status) noexcept {
   return {status, Stage::kFitDraws, status == Status::kOverdamped ? kOverdamped : explain(status)};
+}
+
+Failure failure_of_sensitivity_alone() noexcept {
+  return {Status::kNotIdentifiable, Stage::kFitDraws, kOnlySensitivity};
 }
 
 Failure failure_of_width(Status status, Distribution distribution) noexcept {

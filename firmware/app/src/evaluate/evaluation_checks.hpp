@@ -30,6 +30,9 @@ Failure check_goal(const EvaluationResults& results, const Settings& settings, G
 /// @returns Why there is no fit of the points.
 Failure failure_of_fit(Status status) noexcept;
 
+/// @returns Why points that determine the sensitivity alone have no energy.
+Failure failure_of_sensitivity_alone() noexcept;
+
 /// @returns Why trials of this distribution cannot be made.
 Failure failure_of_width(Status status, Distribution distribution) noexcept;
 

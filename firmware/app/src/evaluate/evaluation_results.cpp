@@ -17,6 +17,19 @@ bool is_same_memory(const void* a, const void* b, std::size_t bytes) noexcept {
   return is_same;
 }
 
+/// Whether the points are the same, bit for bit, but for phases that nobody knows: a fit puts those
+/// of its model in their place.
+bool is_same_response(const FrequencyResponse& a, const FrequencyResponse& b) noexcept {
+  bool is_same = a.size() == b.size();
+  for (std::size_t i = 0; is_same && i < a.size(); ++i) {
+    ResponsePoint point = a.points()[i];
+    const ResponsePoint& other = b.points()[i];
+    point.phase_rad = is_phase_known(point) ? point.phase_rad : other.phase_rad;
+    is_same = is_same_memory(&point, &other, sizeof point);
+  }
+  return is_same;
+}
+
 /// Whether two tables of numbers are the same, bit for bit; no type here has gaps.
 template <typename T>
 bool is_same(Span<const T> a, Span<const T> b) noexcept {
@@ -54,6 +67,7 @@ void EvaluationResults::clear() noexcept {
   has_energy = false;
   has_bound = false;
   is_bound_done = false;
+  judgement = {};
   has_fit_draws = false;
   ideal = {};
   band.clear();
@@ -91,6 +105,8 @@ bool EvaluationResults::has_uncertainties() const noexcept {
 void EvaluationResults::drop_trials() noexcept {
   guard = {};
   has_monte_carlo = false;
+  has_cut_range = false;
+  is_cut_done = false;
 }
 
 void EvaluationResults::drop_trend() noexcept {
@@ -101,6 +117,9 @@ void EvaluationResults::drop_trend() noexcept {
 }
 
 bool EvaluationResults::has_uncertainty() const noexcept {
+  if (is_damping_open()) {
+    return false;
+  }
   const ParameterBox& u = device.u;
   return u.sensitivity != 0.0 || u.natural_frequency_hz != 0.0 || u.damping != 0.0;
 }
@@ -115,6 +134,7 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
   }
   const bool holds_energy = has_energy && is_bound_done;
   const bool holds_trials = has_monte_carlo && is_same_trials(settings, wanted);
+  const bool has_rest_of_trials = is_damping_open() ? is_cut_done : !has_uncertainty();
   const bool holds_trend = has_trend && is_same_trend(settings, wanted);
   const bool holds_draws = has_fit_draws && is_same_random(settings, wanted);
   switch (goal) {
@@ -132,7 +152,7 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
       return holds_energy && uncertainty.is_done && is_same_trials(settings, wanted);
     case Goal::kReport:
       return holds_energy && has_figures() &&
-             ((holds_trials && has_uncertainties()) || !has_uncertainty()) &&
+             ((holds_trials && has_uncertainties()) || has_rest_of_trials) &&
              (holds_trend || wanted.trend_count == 0) && (holds_draws || source == Source::kModel);
   }
   return false;
@@ -144,8 +164,7 @@ bool EvaluationResults::is_of(const Device& other) const noexcept {
 
 bool EvaluationResults::is_of(const FrequencyResponse& points) const noexcept {
   const FrequencyResponse& own = fit.response();
-  return has_fit() && is_same(own.points(), points.points()) &&
-         is_same(own.common(), points.common());
+  return has_fit() && is_same_response(own, points) && is_same(own.common(), points.common());
 }
 
 double EvaluationResults::covariance(std::size_t i, std::size_t j) const noexcept {

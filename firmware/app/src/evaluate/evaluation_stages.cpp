@@ -83,7 +83,8 @@ double Evaluation::progress_of_stage() const noexcept {
     case Stage::kBound:
       return work_.part_.bound.bound.progress();
     case Stage::kPrediction:
-      return work_.part_.trial.trials.progress();
+      return results_.is_damping_open() ? work_.part_.cut.range.progress()
+                                        : work_.part_.trial.trials.progress();
     case Stage::kAdaptive:
       return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
@@ -290,7 +291,36 @@ TrialSettings Evaluation::trial_settings(Distribution distribution) const noexce
   return trial_settings;
 }
 
+void Evaluation::begin_cut_range() noexcept {
+  const Settings& settings = results_.settings;
+  auto* const part = new (&work_.part_.cut) EvaluationWorkspace::CutPart;
+  part->range.start(results_.model, results_.judgement,
+                    search_settings(settings, settings.duration_s),
+                    settings.gain_mode == GainMode::kTrack);
+  results_.stage = Stage::kPrediction;
+}
+
+void Evaluation::step_cut_range() noexcept {
+  CutRange& range = work_.part_.cut.range;
+  range.step(work_.search_, work_.grid_);
+  if (!range.done()) {
+    return;
+  }
+  const double energy = results_.maximum.energy;
+  const double low = range.low() < energy ? range.low() : energy;
+  const double high = range.high() > energy ? range.high() : energy;
+  results_.cut_low_v2s = results_.a2() * low;
+  results_.cut_high_v2s = results_.a2() * high;
+  results_.has_cut_range = range.is_found();
+  results_.is_cut_done = true;
+  go_on();
+}
+
 void Evaluation::step_prediction() noexcept {
+  if (results_.is_damping_open()) {
+    step_cut_range();
+    return;
+  }
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   if (!part.trials.ready()) {
     part.trials.prepare(work_.search_, work_.grid_);

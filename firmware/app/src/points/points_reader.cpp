@@ -276,7 +276,7 @@ void PointsReader::add_point(const double* numbers) noexcept {
     return;
   }
   if (status == Status::kTooManyPoints) {
-    fail("this is point number 65", kExpectedPoints);
+    fail("this is one point more than " EMAX_TEXT_OF(EMAX_MAX_POINTS), kExpectedPoints);
     return;
   }
   if (status != Status::kOk) {

@@ -42,6 +42,28 @@ double reduced_chi_square_quantile(std::size_t dof, double z) noexcept {
 
 // What was put in
 
+void write_points(const EvaluationResults& results, const ReportContext& context,
+                  ReportWriter& out) noexcept {
+  const Span<const ResponsePoint> points = results.fit.response().points();
+  if (context.measurement != nullptr) {
+    const bool is_simulated = context.measurement->simulated != nullptr;
+    out.text("measured on the ").text(is_simulated ? "simulated " : "").text("bench").line();
+  } else {
+    out.text("measured points");
+    if (context.source_name != nullptr) {
+      out.text(": ");
+      out.quote(context.source_name);
+    }
+    out.line();
+  }
+  out.indent().integer(points.size()).text(" points from ").exact(points[0].frequency_hz);
+  out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
+  if (context.read_as != nullptr) {
+    out.indent();
+    out.quote(context.read_as).line();
+  }
+}
+
 void write_source(const EvaluationResults& results, const ReportContext& context,
                   ReportWriter& out) noexcept {
   out.label("Device");
@@ -62,20 +84,7 @@ void write_source(const EvaluationResults& results, const ReportContext& context
         .line();
     return;
   }
-  const Span<const ResponsePoint> points = results.fit.response().points();
-  if (context.measurement != nullptr) {
-    const bool is_simulated = context.measurement->simulated != nullptr;
-    out.text("measured on the ").text(is_simulated ? "simulated " : "").text("bench").line();
-  } else {
-    out.text("measured points");
-    if (context.source_name != nullptr) {
-      out.text(": ");
-      out.quote(context.source_name);
-    }
-    out.line();
-  }
-  out.indent().integer(points.size()).text(" points from ").exact(points[0].frequency_hz);
-  out.text(" Hz to ").exact(points[points.size() - 1].frequency_hz).text(" Hz").line();
+  write_points(results, context, out);
 }
 
 void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept {
@@ -167,6 +176,14 @@ void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
   const int decimals = decimals_for(estimate.u);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(11).text(estimate.name);
+  if (estimate.u == 0.0) {
+    out.cell(15).general(estimate.value, 4);
+    for (int i = 0; i < 3; ++i) {
+      out.cell(15).text("held");
+    }
+    out.cell(0).text("  ").text(estimate.unit).line();
+    return;
+  }
   out.cell(15).fixed(estimate.value, decimals);
   out.cell(15).fixed(estimate.u, decimals);
   out.cell(15).fixed(estimate.u_by_draws, decimals);
@@ -186,7 +203,7 @@ void write_estimates(const EvaluationResults& results, ReportWriter& out) noexce
   out.cell(0).text("  unit").line();
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     const Estimate estimate = {kParameterNames[i], kParameterUnits[i],
-                               estimate_of(results.device.estimate, i),
+                               estimate_of(results.fit.result().model, i),
                                sqrt(results.covariance(i, i)), sqrt(draws.covariance[i][i])};
     write_estimate(estimate, out);
     if (i == 0 && out.in_g()) {
@@ -218,7 +235,7 @@ void write_truth(const EvaluationResults& results, const Accelerometer& truth,
   out.exact(truth.damping).line();
   out.indent().text("the estimates are off by");
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
-    const double off = estimate_of(results.device.estimate, i) - estimate_of(truth, i);
+    const double off = estimate_of(results.fit.result().model, i) - estimate_of(truth, i);
     out.text(i == 0 ? " " : i == 1 ? ", " : " and ");
     out.fixed(off / sqrt(results.covariance(i, i)), 2);
   }
@@ -238,7 +255,7 @@ void write_correlations(const EvaluationResults& results, ReportWriter& out) noe
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     for (std::size_t j = i + 1; j < kWlspParameters; ++j) {
       const double scale = sqrt(results.covariance(i, i) * results.covariance(j, j));
-      const double r = results.covariance(i, j) / scale;
+      const double r = scale > 0.0 ? results.covariance(i, j) / scale : 0.0;
       out.text(i + j == 1 ? "" : ", ").text("r(").text(kParameterNames[i]).text(",");
       out.text(kParameterNames[j]).text(") = ").fixed(abs(r) < kLeastCorrelationShown ? 0.0 : r, 3);
     }
@@ -246,7 +263,7 @@ void write_correlations(const EvaluationResults& results, ReportWriter& out) noe
   out.line();
 }
 
-void write_fit_warning(const WlspFit& fit, ReportWriter& out) noexcept {
+void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
   const double reduced = fit.chi2 / fit.dof;
   const double limit = reduced_chi_square_limit(fit.dof);
   if (reduced > limit) {
@@ -264,8 +281,11 @@ void write_fit_warning(const WlspFit& fit, ReportWriter& out) noexcept {
     out.general(fit.birge_ratio, 3).text(".\n");
     out.text(
         "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
-        "  channels (a phase that grows with frequency), and that the table's uncertainties are\n"
-        "  expanded ones (k = 2).\n");
+        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
+        "  and that the table's uncertainties are expanded ones (k = 2).\n");
+    if (cause != nullptr) {
+      write_cause(cause, out);
+    }
     return;
   }
   const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
@@ -336,8 +356,9 @@ void write_large_residuals(const Wlsp& fit, ReportWriter& out) noexcept {
   }
 }
 
-void write_fit(const EvaluationResults& results, const Measurement* measurement,
+void write_fit(const EvaluationResults& results, const ReportContext& context,
                ReportWriter& out) noexcept {
+  const Measurement* measurement = context.measurement;
   const WlspFit& fit = results.fit.result();
   out.heading(ReportSection::kFit, "FIT");
   out.part(ReportPart::kText);
@@ -353,7 +374,8 @@ void write_fit(const EvaluationResults& results, const Measurement* measurement,
   out.label("Birge ratio").general(fit.birge_ratio, 4);
   out.text(" (1 where model and uncertainties hold)").line();
   write_correlations(results, out);
-  write_fit_warning(fit, out);
+  write_fit_notes(results, out);
+  write_fit_warning(fit, context.cause, out);
   write_large_residuals(results.fit, out);
 }
 
@@ -564,6 +586,10 @@ void write_trial_warnings(const TrialResults& trials, ReportWriter& out) noexcep
 }
 
 void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noexcept {
+  if (results.is_damping_open()) {
+    write_cut_range(results, out);
+    return;
+  }
   const bool is_box = results.settings.distribution == Distribution::kBox;
   out.heading(ReportSection::kMonteCarlo,
               is_box ? "MONTE CARLO OF THE PAPER (S, f0 and beta uniform within estimate +- u, "
@@ -643,6 +669,12 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
 
 }  // namespace
 
+void write_points_source(const EvaluationResults& results, const ReportContext& context,
+                         ReportWriter& out) noexcept {
+  out.label("Device");
+  write_points(results, context, out);
+}
+
 double reduced_chi_square_limit(std::size_t dof) noexcept {
   return reduced_chi_square_quantile(dof, kQuantile99);
 }
@@ -657,7 +689,7 @@ void write_report(const EvaluationResults& results, const ReportContext& context
     write_measurement_section(*context.measurement, writer);
   }
   if (results.source == Source::kPoints) {
-    write_fit(results, context.measurement, writer);
+    write_fit(results, context, writer);
   }
   write_error_system(results, writer);
   write_energy(results, writer);

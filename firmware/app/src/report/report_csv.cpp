@@ -24,7 +24,11 @@ void write_point(const ResponsePoint& point, double common_u, TextWriter& out) n
   // 15 digits give the angles back as they were before they became radians, and a total from which
   // the common part was taken.
   out.exact(point.frequency_hz).text(",").exact(point.amplitude).text(",");
-  out.general(point.phase_rad * kDegreesPerRadian, kTableDigits).text(",");
+  const bool has_phase = is_phase_known(point);
+  if (has_phase) {
+    out.general(point.phase_rad * kDegreesPerRadian, kTableDigits);
+  }
+  out.text(",");
   if (common_u > 0.0) {
     const double common = common_u * point.amplitude;
     const double total = sqrt(point.u_amplitude * point.u_amplitude + common * common);
@@ -32,7 +36,9 @@ void write_point(const ResponsePoint& point, double common_u, TextWriter& out) n
   } else {
     out.exact(kCoverageFactor * point.u_amplitude).text(",");
   }
-  out.general(kCoverageFactor * point.u_phase_rad * kDegreesPerRadian, kTableDigits);
+  if (has_phase) {
+    out.general(kCoverageFactor * point.u_phase_rad * kDegreesPerRadian, kTableDigits);
+  }
 }
 
 /// Row `row` of `rows` equally spaced ones from 0 to `end`; the last is `end` itself.

@@ -389,6 +389,48 @@ void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexc
   json.close();
 }
 
+const char* name_of(Determined determined) noexcept {
+  switch (determined) {
+    case Determined::kAll:
+      return "all";
+    case Determined::kAllButDamping:
+      return "all but beta";
+    case Determined::kSensitivity:
+      return "S";
+    case Determined::kNothing:
+      break;
+  }
+  return "nothing";
+}
+
+// What the points determine, as fitted, and the range of the energy where they leave beta open.
+void write_fit(const EvaluationResults& results, const ReportContext& context,
+               JsonWriter& json) noexcept {
+  const FitJudgement& judgement = results.judgement;
+  if (results.source != Source::kPoints || context.measurement != nullptr) {
+    return;
+  }
+  const WlspFit& fit = results.fit.result();
+  json.open("fit");
+  json.words("determined", name_of(judgement.determined));
+  write_number_or_null("beta", fit.u_sensitivity > 0.0, fit.model.damping, json);
+  write_number_or_null("ubeta", fit.u_sensitivity > 0.0, fit.u_damping, json);
+  json.integer("unknown_phases", fit.unknown_phases);
+  if (context.read_as != nullptr) {
+    json.words("read_as", context.read_as);
+  }
+  if (context.cause != nullptr) {
+    json.words("cause", context.cause);
+  }
+  if (results.is_damping_open()) {
+    json.pair("beta_range", judgement.damping_low, judgement.damping_high);
+  }
+  if (results.has_cut_range) {
+    json.pair("E_range", results.cut_low_v2s, results.cut_high_v2s);
+  }
+  json.close();
+}
+
 void write_trend(const EvaluationResults& results, JsonWriter& json) noexcept {
   if (results.trend_points().empty()) {
     json.null("trend");
@@ -435,6 +477,7 @@ void write_json(const EvaluationResults& results, const ReportContext& context,
   json.open(nullptr);
   write_head(context.labels, json);
   write_model(results, context, json);
+  write_fit(results, context, json);
   write_bench(context.measurement, nullptr, json);
   write_filter(results, json);
   write_impulse_response(results, json);
@@ -446,6 +489,28 @@ void write_json(const EvaluationResults& results, const ReportContext& context,
   write_trend(results, json);
   write_warnings(results, context, json);
   json.boolean("simulated", is_simulated(context));
+  json.close();
+  out.line();
+}
+
+void write_sensitivity_json(const EvaluationResults& results, const ReportContext& context,
+                            TextWriter& out) noexcept {
+  const FitJudgement& judgement = results.judgement;
+  JsonWriter json(out);
+  json.open(nullptr);
+  write_head(context.labels, json);
+  json.open("model");
+  json.number("S", judgement.device.sensitivity);
+  json.null("f0");
+  json.null("beta");
+  json.number("uS", judgement.u_sensitivity);
+  json.words("source", source_of(results, context.measurement));
+  json.close();
+  write_fit(results, context, json);
+  for (const char* part :
+       {"bench", "filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
+    json.null(part);
+  }
   json.close();
   out.line();
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "emax/app/base/text_writer.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report_context.hpp"
 
@@ -56,6 +57,19 @@ inline int decimals_for(double u) noexcept {
 
 /// Title of the report, where its equations are from, and the labels.
 void write_title(const Labels& labels, ReportWriter& out) noexcept;
+
+/// The row on where the points are from, and what was understood of them.
+void write_points_source(const EvaluationResults& results, const ReportContext& context,
+                         ReportWriter& out) noexcept;
+
+/// Where the points leave a parameter open, or disagree with what can be.
+void write_fit_notes(const EvaluationResults& results, ReportWriter& out) noexcept;
+
+/// Why the points do not fit, in lines.
+void write_cause(const char* cause, ReportWriter& out) noexcept;
+
+/// The section in place of Monte Carlo where the damping is open.
+void write_cut_range(const EvaluationResults& results, ReportWriter& out) noexcept;
 
 /// The section on the measurement with its budget.
 void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept;

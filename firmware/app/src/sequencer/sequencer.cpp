@@ -24,6 +24,11 @@ void Sequencer::take(const FrequencyResponse& points) noexcept {
   origin_ = Origin::kTable;
 }
 
+void Sequencer::give_damping(double damping) noexcept {
+  evaluation_.clear();
+  evaluation_.fit.give_damping(damping);
+}
+
 bool Sequencer::take_points() noexcept {
   const bool changes = origin_ == Origin::kModel && points_.size() > 0;
   if (changes) {

@@ -99,6 +99,10 @@ class Evaluation {
   /// trials. After a start, until the evaluation is done.
   void lend_trial_store(Span<double> store) noexcept;
 
+  /// The damping to hold where a table has magnitudes alone that do not determine it
+  /// (`Wlsp::give_damping()`); 0 for none. For the starts to come, on the same results.
+  void give_damping(double damping) noexcept { results_.fit.give_damping(damping); }
+
   /// Lends memory for the polynomials of parts of the ranges (`TrialSettings::pieces`): with it
   /// trials of devices with many switches take microseconds, without it each may be a refinement.
   /// After a start, until the evaluation is done.
@@ -133,6 +137,9 @@ class Evaluation {
   void step_energy() noexcept;
   void begin_bound() noexcept;
   void step_bound() noexcept;
+  Status take_fit(Status fit_status) noexcept;
+  void begin_cut_range() noexcept;
+  void step_cut_range() noexcept;
   void begin_trials() noexcept;
   void note_root(double energy_v2s) noexcept;
   void step_prediction() noexcept;

@@ -10,6 +10,7 @@
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/energy/energy_search.hpp"
+#include "emax/identify/fit_judgement.hpp"
 #include "emax/identify/frequency_response.hpp"
 #include "emax/identify/wlsp.hpp"
 #include "emax/model/accelerometer.hpp"
@@ -140,6 +141,8 @@ struct EvaluationResults {
   bool has_bound = false;      ///< False where no upper bound passed its check.
   bool is_bound_done = false;  ///< A bound was looked for: proven or given up.
   bool has_monte_carlo = false;
+  bool has_cut_range = false;  ///< False where a search at an end of the range has failed.
+  bool is_cut_done = false;    ///< The range of energies was looked for: found or given up.
   bool has_trend = false;
   std::size_t trace_count = 0;
   std::size_t trend_count = 0;
@@ -153,9 +156,12 @@ struct EvaluationResults {
   SettlingTime settling_time;     ///< To 5 % of the peak.
   double absolute_error_v = 0.0;  ///< The largest |y(t)| of any signal within +-a of this T.
   double bound_v2s = 0.0;         ///< No signal within +-a of this T has more; with `has_bound`.
+  double cut_low_v2s = 0.0;       ///< With `has_cut_range`: the energies over the dampings that
+  double cut_high_v2s = 0.0;      ///< the points leave open.
   GuardResults guard;
   AdaptiveResult adaptive;
   Accelerometer device_at_maximum;               ///< Of the trial with the largest energy.
+  FitJudgement judgement;                        ///< What the points determine.
   Trend trend;                                   ///< Energies in V^2 s.
   WlspDrawsResult fit_draws;                     ///< With `has_fit_draws`.
   TrialResults trials;                           ///< With `has_monte_carlo`.
@@ -180,6 +186,12 @@ struct EvaluationResults {
   bool done() const noexcept { return stage == Stage::kDone || stage == Stage::kFailed; }
   Status status() const noexcept { return failure.status; }
   bool has_fit() const noexcept { return is_accepted && source == Source::kPoints; }
+  /// @returns Whether the points leave the damping open. There are no trials then, but the range of
+  /// the energies over the dampings that they leave.
+  bool is_damping_open() const noexcept {
+    return source == Source::kPoints && judgement.determined == Determined::kAllButDamping;
+  }
+  /// @returns Whether there is an uncertainty for trials, which need a range for each parameter.
   bool has_uncertainty() const noexcept;
   /// @returns Whether both in-band errors and the ideal sensor were looked for.
   bool has_figures() const noexcept { return ideal.is_done && band.is_done && matched.is_done; }

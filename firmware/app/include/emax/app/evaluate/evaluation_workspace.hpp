@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/evaluate/cut_range.hpp"
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/span.hpp"
@@ -43,6 +44,9 @@ class EvaluationWorkspace {
   struct BoundPart : InPlace {
     EnergyBound bound;
   };
+  struct CutPart : InPlace {
+    CutRange range;
+  };
   struct FigurePart : InPlace {
     ModalModel model;
     EnergyBound bound;
@@ -68,6 +72,7 @@ class EvaluationWorkspace {
     constexpr Part() noexcept : trial() {}
     ModelPart model;
     BoundPart bound;
+    CutPart cut;
     FigurePart figure;
     TrialPart trial;
   };

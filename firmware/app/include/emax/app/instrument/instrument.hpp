@@ -202,6 +202,7 @@ class Instrument {
 };
 
 // Beside the sequencer: settings, console, status.
-static_assert(sizeof(Instrument) <= sizeof(Sequencer) + std::size_t{9} * 1024);
+static_assert(!kHasDefaultCapacities ||
+              sizeof(Instrument) <= sizeof(Sequencer) + std::size_t{9} * 1024);
 
 }  // namespace emax::app

@@ -41,6 +41,16 @@ void write_report(const EvaluationResults& results, const ReportContext& context
 void write_json(const EvaluationResults& results, const ReportContext& context,
                 TextWriter& out) noexcept;
 
+/// Writes the report of points that determine the sensitivity alone: there is no energy.
+///
+/// @param[in] results    That has refused them with Determined::kSensitivity.
+void write_sensitivity_report(const EvaluationResults& results, const ReportContext& context,
+                              TextWriter& out, ReportMarkup* markup = nullptr) noexcept;
+
+/// The same as results.json, with null for all that there is not.
+void write_sensitivity_json(const EvaluationResults& results, const ReportContext& context,
+                            TextWriter& out) noexcept;
+
 /// Writes one sentence, without line feed, on why an evaluation was refused or has ended early,
 /// with the T or the fitted values that it is about; nothing if it has not failed.
 void write_failure(const EvaluationResults& results, TextWriter& out) noexcept;

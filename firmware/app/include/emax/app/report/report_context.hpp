@@ -30,7 +30,9 @@ struct ReportContext {
   const char* source_name = nullptr;         ///< Of the file with the points; null if none.
   const Measurement* measurement = nullptr;  ///< Null if the points were not measured here.
   Labels labels = {};
-  bool in_g = false;  ///< Accelerations and sensitivities also in standard gravity.
+  bool in_g = false;              ///< Accelerations and sensitivities also in standard gravity.
+  const char* cause = nullptr;    ///< Why the points do not fit a device; null if nobody knows.
+  const char* read_as = nullptr;  ///< What was understood of a table of points; null for nothing.
 };
 
 /// m/s^2, exactly (ISO 80000-3).

@@ -80,6 +80,9 @@ class Sequencer {
 
   /// A device by its parameters.
   void take(const Device& device) noexcept;
+  /// The damping to hold where points have magnitudes alone that do not determine it
+  /// (`Wlsp::give_damping()`); 0 for none. Results of before are gone.
+  void give_damping(double damping) noexcept;
   /// The device of a fit of before power off.
   void take(const Identification& identification) noexcept;
   /// The device that these points give.

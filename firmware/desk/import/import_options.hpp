@@ -1,0 +1,32 @@
+// Values of the options that say what a table does not.
+#pragma once
+
+#include <string_view>
+
+#include "desk/import/import_points.hpp"
+
+namespace emax::desk {
+
+/// Reads "1%,1deg": expanded uncertainties (k = 2) of amplitude and phase, in this order or the
+/// other, one or both; of the amplitude in percent, dB or a unit of its own, of the phase in deg,
+/// rad or mrad.
+///
+/// @returns False for anything else; nothing has changed then.
+bool take_uncertainty(std::string_view text, ImportOptions& options);
+
+/// Reads "mV/g" or "kHz,mV/g,rad": units of frequency, amplitude and phase, each at most once.
+///
+/// @returns False for anything else; nothing has changed then.
+bool take_input_units(std::string_view text, ImportOptions& options);
+
+/// Reads a number of seconds, of at most 1 s in size.
+///
+/// @returns False for anything else; nothing has changed then.
+bool take_channel_delay(std::string_view text, ImportOptions& options);
+
+inline constexpr char kExpectedUncertaintyOption[] =
+    "expanded uncertainties (k = 2) with their units, such as 1%,1deg";
+inline constexpr char kExpectedInputUnits[] = "known units, such as mV/g or kHz,mV/(m/s2),rad";
+inline constexpr char kExpectedChannelDelay[] = "a number of seconds from -1 to 1";
+
+}  // namespace emax::desk

@@ -1,0 +1,69 @@
+// A table of measured points as a laboratory has it: text in, points or a complaint out.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "emax/identify/frequency_response.hpp"
+
+#include "desk/import/input_units.hpp"
+
+namespace emax::desk {
+
+/// An expanded uncertainty (k = 2) for tables without a column of it.
+struct GivenUncertainty {
+  double value = 0.0;  ///< In `unit`; 0 for none given.
+  Unit unit;
+};
+
+/// What the command line says about a table.
+struct ImportOptions {
+  GivenUncertainty amplitude_uncertainty;
+  GivenUncertainty phase_uncertainty;
+  Unit frequency_unit;  ///< For columns whose unit the header does not name.
+  Unit amplitude_unit;
+  Unit phase_unit;
+  double channel_delay_s = 0.0;  ///< Of the device's channel behind the reference's; removed.
+  bool is_inverted = false;      ///< 180 degrees are added to every phase.
+};
+
+/// Where a table stops being one, or why none of it can be used.
+struct ImportError {
+  std::size_t line = 0;     ///< From 1; 0 where the table as a whole is meant.
+  std::string problem;      ///< Empty if all is well: "amplitude is not a number".
+  std::string expectation;  ///< "expected ...".
+
+  explicit operator bool() const noexcept { return !problem.empty(); }
+};
+
+/// A table that has been read.
+struct ImportedPoints {
+  FrequencyResponse points;        ///< Ascending; standard uncertainties; a phase may be unknown.
+  std::vector<std::size_t> lines;  ///< The line that each point came from, from 1.
+  /// What was understood: "read as Hz, mV/g, deg, percent; 20 points; tabs, decimal comma".
+  std::string understanding;
+};
+
+/// Reads a table in UTF-8, UTF-16 or Latin-1.
+///
+/// Separators are tabs, semicolons, commas or blanks; a decimal comma goes with all but commas.
+/// Quotes, trailing separators, empty lines, lines that begin with '#' or '%', comments behind a
+/// '#' and U+2212 for a minus are allowed. Lines before the header are passed over. The header is
+/// read: its names say what a column is, and its units, or those of a row of units below it, what
+/// it is in; columns of other names are not used. A table without a header is the native form,
+/// f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg with expanded uncertainties (k = 2).
+///
+/// Points are put in order. Rows of the same frequency are one point: means of amplitude and
+/// phase, and u^2 the mean of theirs plus the variance of the mean by their scatter; what a row
+/// states is not made smaller, since most of it is common to all rows. A row without a phase and
+/// without its uncertainty is a point whose phase is unknown (`kUnknownPhase_rad`).
+///
+/// Time and memory are proportional to the text, but for sorting the rows.
+///
+/// @param[out] imported Of no use after an error.
+ImportError import_points(std::string_view text, const ImportOptions& options,
+                          ImportedPoints& imported);
+
+}  // namespace emax::desk

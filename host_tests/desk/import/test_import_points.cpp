@@ -1,0 +1,327 @@
+// Tables as text: separators, headers, units, repeats, and the words about what is wrong with them.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "emax/base/capacity.hpp"
+#include "emax/identify/frequency_response.hpp"
+
+#include "desk/import/import_options.hpp"
+#include "desk/import/import_points.hpp"
+
+namespace {
+
+using emax::ResponsePoint;
+using emax::desk::import_points;
+using emax::desk::ImportedPoints;
+using emax::desk::ImportError;
+using emax::desk::ImportOptions;
+using emax::desk::take_channel_delay;
+using emax::desk::take_input_units;
+using emax::desk::take_uncertainty;
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+// Conversions round a few times.
+constexpr double kRounding = 1e-14;
+
+ImportedPoints imported(const std::string& text, const ImportOptions& options = {}) {
+  ImportedPoints points;
+  const ImportError error = import_points(text, options, points);
+  EXPECT_FALSE(error) << error.line << ": " << error.problem << "; " << error.expectation;
+  return points;
+}
+
+ImportError refused(const std::string& text, const ImportOptions& options = {}) {
+  ImportedPoints points;
+  const ImportError error = import_points(text, options, points);
+  EXPECT_TRUE(error) << points.understanding;
+  EXPECT_NE(error.expectation, "");
+  return error;
+}
+
+void expect_point(const ResponsePoint& point, double f, double a, double phase_deg, double u_a,
+                  double u_deg) {
+  EXPECT_NEAR(point.frequency_hz, f, kRounding * f);
+  EXPECT_NEAR(point.amplitude, a, kRounding * a);
+  EXPECT_NEAR(point.phase_rad, phase_deg * kDegree, kRounding * std::abs(phase_deg));
+  EXPECT_NEAR(point.u_amplitude, 0.5 * u_a, kRounding * u_a);
+  EXPECT_NEAR(point.u_phase_rad, 0.5 * u_deg * kDegree, kRounding * u_deg);
+}
+
+const char* const kHeader = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n";
+const char* const kRows = "30,1.5,-2,0.03,1\n40,2.5,-3,0.05,2\n50,3.5,-4,0.07,3\n";
+
+void expect_rows(const ImportedPoints& found) {
+  ASSERT_EQ(found.points.size(), 3U);
+  expect_point(found.points.points()[0], 30.0, 1.5, -2.0, 0.03, 1.0);
+  expect_point(found.points.points()[1], 40.0, 2.5, -3.0, 0.05, 2.0);
+  expect_point(found.points.points()[2], 50.0, 3.5, -4.0, 0.07, 3.0);
+}
+
+TEST(Import, NativeForm) {
+  expect_rows(imported(kRows));
+  expect_rows(imported(std::string(kHeader) + kRows));
+  expect_rows(imported(std::string("\xEF\xBB\xBF# by hand\n\n") + kHeader + kRows));
+  const ImportedPoints found = imported(kRows);
+  EXPECT_EQ(found.understanding, "read as Hz, V/(m/s2), deg; 3 points");
+  EXPECT_EQ(found.lines, (std::vector<std::size_t>{1, 2, 3}));
+  // The bits of the native reader: halved, then turned into radians.
+  EXPECT_EQ(found.points.points()[1].u_phase_rad, 2.0 / 2.0 * 0.017453292519943295);
+}
+
+TEST(Import, Separators) {
+  for (const char* separator : {";", "\t", " ", "  \t ", " ; ", ", ", "\t\t"}) {
+    if (std::string(separator) == "\t\t") {
+      continue;  // Two tabs are an empty cell.
+    }
+    std::string text;
+    for (const char c : std::string(kHeader) + kRows) {
+      text += c == ',' ? separator : std::string(1, c);
+    }
+    expect_rows(imported(text));
+  }
+}
+
+TEST(Import, DecimalCommas) {
+  for (const char separator : {';', '\t', ' '}) {
+    std::string text;
+    for (const char c : std::string(kHeader) + kRows) {
+      text += c == ',' ? separator : c == '.' ? ',' : c;
+    }
+    const ImportedPoints found = imported(text);
+    expect_rows(found);
+    EXPECT_NE(found.understanding.find("decimal comma"), std::string::npos);
+  }
+  // A point among decimal commas groups thousands, or is a slip.
+  EXPECT_EQ(refused("30;1,5;-2;0,03;1\n1.040;2,5;-3;0,05;2\n50;3,5;-4;0,07;3\n").problem,
+            "f_hz is not a number");
+}
+
+TEST(Import, Encodings) {
+  const std::string plain = std::string(kHeader) + kRows;
+  for (const bool is_big : {false, true}) {
+    for (const bool has_mark : {false, true}) {
+      std::string text = has_mark ? (is_big ? "\xFE\xFF" : "\xFF\xFE") : "";
+      for (const char c : plain) {
+        text += is_big ? std::string{'\0', c} : std::string{c, '\0'};
+      }
+      const ImportedPoints found = imported(text);
+      expect_rows(found);
+      EXPECT_NE(found.understanding.find("UTF-16"), std::string::npos);
+    }
+  }
+  expect_rows(imported("Gemessen in M\xFCnchen\n" + plain));
+  EXPECT_EQ(refused(std::string("\xFF\xFE\0\0f\0\0\0", 8)).problem, "the encoding is UTF-32");
+  EXPECT_EQ(refused(plain + "60,1\x01,0,0.1,1\n").line, 5U);
+}
+
+TEST(Import, LineEnds) {
+  for (const char* end : {"\r\n", "\r"}) {
+    std::string text;
+    for (const char c : std::string(kHeader) + kRows) {
+      text += c == '\n' ? end : std::string(1, c);
+    }
+    expect_rows(imported(text));
+  }
+}
+
+TEST(Import, QuotesCommentsAndTrailingSeparators) {
+  expect_rows(
+      imported("\"f_hz\",\"amplitude\",\"phase_deg\",\"u_amplitude\",\"u_phase_deg\",,\n"
+               "% remark\n\"30\",\"1.5\",-2,0.03,1,\n40,2.5,-3,0.05,2  # again\n,,,,\n"
+               "50,3.5,-4,0.07,3,,#\n"));
+  expect_rows(
+      imported("30,1.5,\xE2\x88\x92"
+               "2,0.03,1\n40,2.5,-3,0.05,2\n50,3.5,-4,0.07,3\n"));
+}
+
+TEST(Import, LinesBeforeTheHeaderAndARowOfUnits) {
+  const ImportedPoints found = imported(
+      "Report 7; of a laboratory\nSerial: 12\n\nFrequency;S;Phase;U(S);U(Phase)\n"
+      "kHz;mV/(m/s\xC2\xB2);\xC2\xB0;%;mrad\n0.03;1500;-2;2;17\n0.04;2500;-3;2;17\n"
+      "0.05;3500;-4;2;17\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  expect_point(found.points.points()[1], 40.0, 2.5, -3.0, 0.05, 17e-3 / kDegree);
+  EXPECT_EQ(found.understanding,
+            "read as kHz, mV/(m/s2), deg, percent, mrad; 3 points; semicolons");
+  EXPECT_EQ(found.lines[0], 6U);
+}
+
+TEST(Import, NamesAndUnitsOfHeaders) {
+  struct Case {
+    const char* header;
+    double f, a, phase_deg, u_a, u_deg;  // Of the row 3,2,1,0.4,0.5.
+  };
+  constexpr double kG = 9.80665;
+  const Case cases[] = {
+      {"Frequency [Hz],Amplitude,Phase [deg],U(A),U(phase)", 3, 2, 1, 0.4, 0.5},
+      {"f/kHz,|K|/(mV/g),phi/deg,uA,uphi", 3e3, 2e-3 / kG, 1, 0.4e-3 / kG, 0.5},
+      {"omega_rad_s,S_v_per_g,phase_rad,u_S_percent,u_phase_deg", 3 / (2 * 180 * kDegree), 2 / kG,
+       1 / kDegree, 2 / kG * 0.004, 0.5},
+      {"Frequenz in Hz,Empfindlichkeit,Phase in Grad,Unsicherheit [%],U Phase", 3, 2, 1, 0.008,
+       0.5},
+      {"f_MHz,sensitivity (pC/g),phase lag (deg),U k=2,u_phase", 3e6, 2 / kG, -1, 0.4 / kG, 0.5},
+      // A standard uncertainty is half of what is expanded.
+      {"f,A,phase,standard uncertainty of A [%],U(phase) k=1", 3, 2, 1, 2 * 0.008, 1.0},
+      {"f,A,phase,u_dB,u_phase", 3, 2, 1, 2 * 0.4 * std::log(10.0) / 20.0, 0.5},
+  };
+  for (const Case& expected : cases) {
+    SCOPED_TRACE(expected.header);
+    const ImportedPoints found =
+        imported(std::string(expected.header) + "\n3,2,1,0.4,0.5\n4,2,1,0.4,0.5\n5,2,1,0.4,0.5\n");
+    ASSERT_EQ(found.points.size(), 3U);
+    expect_point(found.points.points()[0], expected.f, expected.a, expected.phase_deg, expected.u_a,
+                 expected.u_deg);
+  }
+}
+
+TEST(Import, Decibels) {
+  const ImportedPoints found = imported(
+      "f_hz,amplitude [dB re 1 mV/g],phase_deg,u [dB],u_phase_deg\n1,40,0,0.1,1\n2,-20,0,0.1,1\n"
+      "3,0,0,0.1,1\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  constexpr double kUnit = 1e-3 / 9.80665;
+  // A decibel is ln(10)/20 of the amplitude; exp() is good to an ulp.
+  constexpr double kDecibel = 0.11512925464970229;
+  expect_point(found.points.points()[0], 1.0, 100.0 * kUnit, 0.0, 10.0 * kDecibel * kUnit, 1.0);
+  expect_point(found.points.points()[1], 2.0, 0.1 * kUnit, 0.0, 0.01 * kDecibel * kUnit, 1.0);
+  EXPECT_NE(found.understanding.find("dB re 1 mV/g"), std::string::npos);
+}
+
+TEST(Import, RepeatedRowsAreAveragedWithTheirScatter) {
+  const ImportedPoints found =
+      imported("50,3.5,-4,0.07,3\n30,1.4,359,0.04,1\n40,2.5,-3,0.05,2\n30,1.6,-3,0.04,1\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  const ResponsePoint& point = found.points.points()[0];
+  EXPECT_NEAR(point.amplitude, 1.5, 1e-15);
+  // The phase goes on from the first row's: 359 and 357 degrees.
+  EXPECT_NEAR(point.phase_rad, 358.0 * kDegree, 1e-14);
+  // s = 0.1 sqrt(2) of two rows, so the mean adds 0.1 to the stated 0.02.
+  EXPECT_NEAR(point.u_amplitude, std::sqrt(0.02 * 0.02 + 0.1 * 0.1), 1e-15);
+  EXPECT_NEAR(point.u_phase_rad, kDegree * std::sqrt(0.5 * 0.5 + 1.0), 1e-14);
+  const ImportedPoints turned =
+      imported("30,1,-100,0.1,1\n30,1,90,0.1,1\n40,1,0,0.1,1\n50,1,0,0.1,1\n");
+  EXPECT_NEAR(turned.points.points()[0].phase_rad, -185.0 * kDegree, 1e-14);
+  EXPECT_NE(found.understanding.find("1 of them the mean of repeated rows"), std::string::npos);
+}
+
+TEST(Import, PhasesMayBeMissing) {
+  const ImportedPoints found =
+      imported(std::string(kHeader) + "30,1.5,,0.03,\n40,2.5,-3,0.05,2\n50,3.5,-,0.07,---\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  EXPECT_EQ(found.points.known_phases(), 1U);
+  EXPECT_EQ(imported("f,A,U(A)\n1,2,0.1\n2,2,0.1\n3,2,0.1\n").points.known_phases(), 0U);
+  EXPECT_EQ(refused(std::string(kHeader) + "30,1.5,,0.03,1\n" + kRows).problem,
+            "phase_deg is missing");
+  EXPECT_EQ(refused(std::string(kHeader) + "30,1.5,2,0.03,\n" + kRows).problem,
+            "u_phase_deg is missing");
+}
+
+TEST(Import, OptionsSayWhatTheTableDoesNot) {
+  ImportOptions options;
+  ASSERT_TRUE(take_uncertainty("2%, 1deg", options));
+  ASSERT_TRUE(take_input_units("mV/g,kHz,rad", options));
+  const std::string text = "f,A,phase\n3,2,1\n4,2,1\n5,2,1\n";
+  expect_point(imported(text, options).points.points()[0], 3e3, 2e-3 / 9.80665, 1.0 / kDegree,
+               2e-3 / 9.80665 * 0.02, 1.0);
+  // Rows without a header, too.
+  ImportOptions units;
+  ASSERT_TRUE(take_input_units("mV/(m/s^2)", units));
+  expect_point(imported(kRows, units).points.points()[0], 30.0, 1.5e-3, -2.0, 0.03e-3, 1.0);
+  EXPECT_NE(refused(std::string("f,A [V/g],phase,uA,uphi\n") + kRows, units).problem.find("V/g"),
+            std::string::npos);
+  EXPECT_NE(refused(kRows, options).problem.find("uncertainties of its own"), std::string::npos);
+}
+
+TEST(Import, WrongValuesOfOptionsChangeNothing) {
+  for (const char* text : {"", "1", "%", "1%,1%", "1%,", "-1%", "1furlong", "1kHz", "nan%", "0%"}) {
+    ImportOptions options;
+    EXPECT_FALSE(take_uncertainty(text, options)) << text;
+    EXPECT_EQ(options.amplitude_uncertainty.value, 0.0);
+  }
+  for (const char* text : {"", "x", "%", "dB", "mV/g,V/g", "mV/g,"}) {
+    ImportOptions options;
+    EXPECT_FALSE(take_input_units(text, options)) << text;
+    EXPECT_FALSE(options.amplitude_unit.is_given());
+  }
+  for (const char* text : {"", "1.5", "x", "1 s", "nan", "-2"}) {
+    ImportOptions options;
+    EXPECT_FALSE(take_channel_delay(text, options)) << text;
+  }
+}
+
+TEST(Import, DelayAndPolarityAreTakenOut) {
+  ImportOptions options;
+  ASSERT_TRUE(take_channel_delay("0.001", options));
+  options.is_inverted = true;
+  // 30 Hz times 1 ms are 10.8 degrees; 180 - 2 + 10.8 - 360.
+  const ImportedPoints found = imported(kRows, options);
+  EXPECT_NEAR(found.points.points()[0].phase_rad, -171.2 * kDegree, 1e-13);
+}
+
+TEST(Import, EveryComplaintNamesItsLine) {
+  const std::string head = std::string("before\n\n") + kHeader + "30,1.5,-2,0.03,1\n";
+  const struct {
+    const char* row;
+    const char* problem;
+  } cases[] = {
+      {"40,2.5,-3,0.05", "there are 4 columns"},
+      {"40,2.5,-3,0.05,2,7", "there are 6 columns"},
+      {"x,2.5,-3,0.05,2", "f_hz is not a number"},
+      {"40,2.5x,-3,0.05,2", "amplitude is not a number"},
+      {"40,2.5,-3,inf,2", "u_amplitude is not a finite number"},
+      {"40,0,-3,0.05,2", "amplitude is zero or negative"},
+      {"-40,2,-3,0.05,2", "f_hz is zero or negative"},
+      {"40,2,-3,0,2", "u_amplitude is zero or negative"},
+      {"40,2,-3,0.05,-1", "u_phase_deg is zero or negative"},
+      {"40,2,361,0.05,1", "phase_deg is outside -360 to 360"},
+      {"end of the table", "there is 1 column"},
+  };
+  for (const auto& expected : cases) {
+    const ImportError error = refused(head + expected.row + "\n" + kRows);
+    EXPECT_EQ(error.problem, expected.problem);
+    EXPECT_EQ(error.line, 5U) << expected.row;
+  }
+  EXPECT_EQ(refused("30,x,-2,0.03,1\n40,2.5,-3,0.05,2\n").line, 1U);
+}
+
+TEST(Import, HowMany) {
+  EXPECT_EQ(refused("").problem, "the table holds no points");
+  EXPECT_EQ(refused(kHeader).problem, "the table holds no points");
+  EXPECT_EQ(refused("30,1,0,0.01,1\n").problem, "the table holds only 1 point");
+  EXPECT_EQ(refused("30,1,0,0.01,1\n30,1,0,0.01,1\n40,1,0,0.01,1\n").problem,
+            "the table holds only 2 points");
+  std::string many;
+  for (std::size_t i = 1; i <= emax::kMaxPoints; ++i) {
+    many += std::to_string(i) + ",1,0,0.01,1\n";
+  }
+  EXPECT_EQ(imported(many).points.size(), emax::kMaxPoints);
+  EXPECT_EQ(refused(many + "5000,1,0,0.01,1\n").line, emax::kMaxPoints + 1);
+}
+
+// A permutation of the rows is the same table.
+TEST(Import, OrderDoesNotMatter) {
+  std::vector<std::string> rows;
+  for (int i = 1; i <= 50; ++i) {
+    rows.push_back(std::to_string(7 * i) + ",1." + std::to_string(i) + ",-1,0.01,1\n");
+  }
+  const auto text_of = [&rows] {
+    std::string text;
+    for (const std::string& row : rows) {
+      text += row;
+    }
+    return text;
+  };
+  const ImportedPoints first = imported(text_of());
+  std::shuffle(rows.begin(), rows.end(), std::mt19937(7));
+  const ImportedPoints second = imported(text_of());
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(first.points.points()[i].amplitude, second.points.points()[i].amplitude);
+  }
+}
+
+}  // namespace

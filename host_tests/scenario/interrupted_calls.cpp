@@ -1,0 +1,72 @@
+// Preloaded into the program: counts the calls that change files, and ends the process or fails the
+// call at a number given by EMAX_KILL_AT or EMAX_FAIL_AT. EMAX_COUNT_FILE gets the number of calls.
+#include <cerrno>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+namespace {
+
+int number_from(const char* name) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? -1 : std::atoi(text);
+}
+
+// @returns Whether this call is to fail.
+bool is_struck() {
+  static int calls = 0;
+  ++calls;
+  if (calls == number_from("EMAX_KILL_AT")) {
+    (void)raise(SIGKILL);
+  }
+  if (calls == number_from("EMAX_FAIL_AT")) {
+    errno = ENOSPC;
+    return true;
+  }
+  return false;
+}
+
+template <typename Function>
+Function next(const char* name) {
+  void* const found = dlsym(RTLD_NEXT, name);
+  Function function = nullptr;
+  static_assert(sizeof function == sizeof found);
+  std::memcpy(&function, &found, sizeof found);
+  return function;
+}
+
+}  // namespace
+
+extern "C" {
+
+int fsync(int file) { return is_struck() ? -1 : next<int (*)(int)>("fsync")(file); }
+
+int rename(const char* from, const char* to) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*, const char*)>("rename")(from, to);
+}
+
+int link(const char* from, const char* to) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*, const char*)>("link")(from, to);
+}
+
+int unlink(const char* path) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*)>("unlink")(path);
+}
+
+int mkdir(const char* path, mode_t mode) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*, mode_t)>("mkdir")(path, mode);
+}
+
+char* mkdtemp(char* path) noexcept {
+  return is_struck() ? nullptr : next<char* (*)(char*)>("mkdtemp")(path);
+}
+
+FILE* fopen(const char* path, const char* mode) {
+  return is_struck() ? nullptr : next<FILE* (*)(const char*, const char*)>("fopen")(path, mode);
+}
+}

@@ -1,0 +1,142 @@
+"""Files that cannot be lost: killed at every call that changes files, failing disks, many runs at once.
+
+usage: test_files.py PROGRAM DATA_DIRECTORY [unittest arguments]; EMAX_SHIM names the library of interrupted_calls.cpp
+"""
+
+import json
+import os
+import signal
+import unittest
+
+from program_test import DATA, MODEL, QUICK, ProgramTest, main
+
+SHIM = os.environ.get("EMAX_SHIM", "")
+TABLES = DATA / "tables"
+HANDHELD = ["report", "--points", TABLES / "handheld_160hz.csv", *QUICK]
+OTHER = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"
+
+
+def shim(**settings):
+    return {"env": {**os.environ, "LD_PRELOAD": SHIM, **{name: str(value) for name, value in settings.items()}}}
+
+
+@unittest.skipIf(not SHIM, "no library to preload")
+class FilesOfInterruptedRuns(ProgramTest):
+    """The short report of S alone has two files, so that every call can be tried."""
+
+    def table(self, factor):
+        rows = [[float(cell) for cell in line.split(",")]
+                for line in (TABLES / "handheld_160hz.csv").read_text().splitlines()[1:]]
+        lines = [OTHER] + [",".join(map(repr, [f, factor * a, p, factor * ua, up])) for f, a, p, ua, up in rows]
+        return self.write(lines, name=f"table_{factor}.csv")
+
+    def content(self):
+        return {path.name: path.read_bytes() for path in (self.directory / "out").iterdir() if path.is_file()}
+
+    def run_through(self, setting, codes):
+        """Every call is struck once, until the run ends by itself."""
+        first, second, bad = self.table(1.0), self.table(1.1), self.write(["1,2,3"], "bad.csv")
+        self.succeed("report", "--points", first, *QUICK, "--out", "out")
+        old = self.content()
+        self.succeed("report", "--points", second, *QUICK, "--out", "new")
+        new = {path.name: path.read_bytes() for path in (self.directory / "new").iterdir()}
+        self.assertNotEqual(old, new)
+        for number in range(1, 200):
+            self.succeed("report", "--points", first, *QUICK, "--out", "out")
+            self.assertEqual(self.content(), old)  # And no leftovers of the run before.
+            result = self.run_program("report", "--points", second, *QUICK, "--out", "out", **shim(**{setting: number}))
+            found = self.content()
+            for name, text in found.items():
+                self.assertIn(text, [old[name], new[name]], (number, name))
+            self.assertEqual(sorted(found), sorted(old))
+            # Whoever comes next finds all of one run.
+            self.run_program("report", "--points", bad, "--out", "out")
+            settled = self.content()
+            self.assertIn(settled, [old, new], number)
+            if result.returncode == 0 and (settled == new or number > 100):
+                return number
+            self.assertIn(result.returncode, codes, result.stderr)
+        return self.fail("the run never ended by itself")
+
+    def test_killed_at_every_call(self):
+        self.assertGreater(self.run_through("EMAX_KILL_AT", [-signal.SIGKILL]), 8)
+
+    def test_disk_full_at_every_call(self):
+        # Leftovers that cannot be removed are no failure of the run, so some of these runs succeed.
+        self.assertGreater(self.run_through("EMAX_FAIL_AT", [0, 2, 3]), 8)
+
+
+class FilesThatAreKept(ProgramTest):
+    def test_parents_are_made_and_taken_away_again(self):
+        self.succeed(*HANDHELD, "--out", "a/b/c")
+        self.assertEqual(self.files(), ["a", "a/b", "a/b/c", "a/b/c/report.txt", "a/b/c/results.json"])
+        self.refuse(["report", "--points", self.write(["1,2,3"]), "--out", "x/y/z"], "points.csv:1")
+
+    def test_leftovers_of_killed_runs_go(self):
+        (self.directory / "out/.emax.left00").mkdir(parents=True)
+        (self.directory / "out/.emax.left00/report.txt").write_text("half")
+        self.succeed(*HANDHELD, "--out", "out")
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), ["report.txt", "results.json"])
+
+    def test_moves_of_a_killed_run_are_finished(self):
+        complete = self.directory / "out/.emax-complete"
+        complete.mkdir(parents=True)
+        (complete / "mine.txt").write_text("complete")
+        (complete / ".dropped").write_text("gone.txt\n../outside.txt\n")
+        (self.directory / "out/gone.txt").write_text("old")
+        (self.directory / "outside.txt").write_text("not ours")
+        self.succeed(*HANDHELD, "--out", "out")
+        self.assertEqual(self.files(), ["out", "out/mine.txt", "out/report.txt", "out/results.json", "outside.txt"])
+
+    def test_only_regular_files_are_replaced(self):
+        (self.directory / "out").mkdir()
+        target = self.directory / "target"
+        target.write_text("precious")
+        for name, make in [("results.json", os.mkfifo), ("report.txt", lambda path: os.symlink(target, path))]:
+            path = self.directory / "out" / name
+            make(path)
+            self.refuse([*HANDHELD, "--out", "out"], f"out/{name}: not a regular file")
+            path.unlink()
+        self.assertEqual(target.read_text(), "precious")
+        # The certificate's target is looked at before the effort.
+        os.mkfifo(self.directory / "fifo")
+        self.refuse(["certify", *MODEL[:1], "1.037,4073,0.3182", "--effort", "50", "--out", "fifo"], "not a regular file")
+        self.refuse(["certify", *MODEL[:1], "1.037,4073,0.3182", "--effort", "50", "--out", "out"], "not a regular file")
+
+    def test_twenty_runs_at_once(self):
+        tables = []
+        for number in range(20):
+            rows = [f"{f},{0.01 + 1e-4 * number!r},0,0.0001,1" for f in [10, 20, 40, 80]]
+            tables.append(self.write([OTHER, *rows], name=f"{number}.csv"))
+        runs = [self.start_program("report", "--points", table, *QUICK, "--out", "out") for table in tables]
+        for run in runs:
+            error = run.communicate(timeout=60)[1]
+            self.assertEqual(run.returncode, 0, error)
+        self.assertEqual(sorted(os.listdir(self.directory / "out")), ["report.txt", "results.json"])
+        sensitivity = json.loads((self.directory / "out/results.json").read_text())["model"]["S"]
+        name = f"{round((sensitivity - 0.01) / 1e-4)}.csv"
+        self.assertIn(name, (self.directory / "out/report.txt").read_text())
+
+    def test_a_model_keeps_the_points_of_an_earlier_measurement(self):
+        self.succeed("report", "--points", TABLES / "plain.csv", *QUICK, "--out", "out")
+        points = (self.directory / "out/frequency_response.csv").read_text()
+        self.succeed("report", *MODEL, *QUICK, "--out", "out")
+        self.assertFalse((self.directory / "out/frequency_response.csv").exists())
+        self.assertEqual((self.directory / "out/frequency_response.1.csv").read_text(), points)
+
+    def test_a_measurement_is_printed_where_no_file_holds_it(self):
+        (self.directory / "out").mkdir()
+
+        def limit_file_size():
+            import resource
+
+            resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
+
+        result = self.run_program("report", *QUICK, "--json", "--out", "out", preexec_fn=limit_file_size)
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "too large")
+        self.assertEqual(json.loads(result.stdout)["model"]["source"], "bench")
+
+
+if __name__ == "__main__":
+    main()
