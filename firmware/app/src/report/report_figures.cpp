@@ -214,6 +214,10 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
               results.source == Source::kPoints
                   ? "UNCERTAINTY OF E (JCGM 101: S, f0 and beta jointly normal, as fitted)"
                   : "UNCERTAINTY OF E (JCGM 101: S, f0 and beta normal, with the u given)");
+  if (results.is_damping_open()) {
+    out.part(ReportPart::kText).text("  None: the points leave beta open; see the range of E.\n");
+    return;
+  }
   if (!results.has_uncertainty()) {
     out.part(ReportPart::kText).text("  None: all uncertainties are zero.\n");
     return;
