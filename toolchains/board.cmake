@@ -23,7 +23,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   CORE_TITLE <word>      In the tables of firmware/README.md: the core,
 #   TABLE_CLOCK_MHZ <n>    the clock of a chip that has it,
 #   TABLE_LEFT_OUT <part>...  and parts of the costs that would take the runner minutes.
-#   EXTRA_JOBS <job>...    Reports that are compared with those of the PC beside the usual ones (check_targets.cmake).
+#   EXTRA_JOBS <job>...    Reports that are compared with those of the PC beside the usual ones (check_boards.cmake).
 #   GOOGLETEST_MEMORY <file>  Memory map for the PC's tests as images: regions `code` and `ram`, of megabytes.
 #   SLOW_TEST_S <s>        What of these takes longer is left out; slow_tests.txt in the board's folder lists it.
 function(emax_declare_board)

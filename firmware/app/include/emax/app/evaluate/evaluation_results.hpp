@@ -85,7 +85,7 @@ struct EnergyUncertainty {
 /// With GainMode::kFixed the gain is the number given, and S is drawn too.
 struct FigureResults {
   /// How many switching times are kept: 64 with the default capacities.
-  static constexpr std::size_t kTimes = kMaxSwitches / 4;
+  static constexpr std::size_t kTimes = kMaxSwitches / 8;
 
   bool is_done = false;         ///< Looked for, with its bound.
   Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, why there is none.
