@@ -43,7 +43,7 @@ struct BranchNotes {
 ///
 /// Nothing here knows the criterion: it is the model's. Several figures can share `DeviceDraws`.
 ///
-/// Memory with the default capacities: 10.3 KiB, of which the model has 2.4 (one is live at a
+/// Memory with the default capacities: 10.7 KiB, of which the model has 2.4 (one is live at a
 /// time), the signals 4.8 (8 of up to 256 switches), the polynomials 3.3 (8 of degree 4, 7 of 5, 5
 /// of degree 6). Cost: 9 searches, then for each branch 125 to 343 refinements and 38 more; after
 /// that, one multiplication and one addition for each of 35 to 84 terms.

@@ -43,6 +43,11 @@ struct TrialSettings : DrawSettings {
 /// where these do not hold. With `Method::kPaper` each trial is a whole run of the fixed point from
 /// Phi's first column.
 ///
+/// Where a polynomial does not hold all over the ranges, as signals end and others begin, and there
+/// is memory for `TrialSettings::pieces`, the ranges are cut along f0 (and damping), and each part
+/// has branches and polynomials of its own; where these fail too, it is cut in two, as long as
+/// more than 1/256 of the draws are in it. What is left is refined.
+///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
 /// estimate's S and multiplied by the square of their ratio.
 ///
@@ -52,7 +57,7 @@ struct TrialSettings : DrawSettings {
 ///     }
 ///     const double energy = trials.energy(0, workspace);
 ///
-/// 10.6 KiB beside the workspace.
+/// 11 KiB beside the workspace.
 class EnergyTrials {
  public:
   /// The ranges are cut into as many parts along f0, and those in two where polynomials fail.
