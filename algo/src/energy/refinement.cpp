@@ -3,6 +3,7 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/energy/known_energy.hpp"
 
 namespace emax {
 namespace {
@@ -328,6 +329,11 @@ void Refiner::start(const SwitchingSignal& signal) noexcept {
 
 void Refiner::end(const ModalModel& model, SwitchingSignal& signal) noexcept {
   drop_idle_end(model, signal, result_.energy);
+  const double rounding =
+      energy_rounding(model, signal.duration_s(), signal.count(), result_.energy);
+  if (model.moved_by() > 0.0 || !(rounding <= kPermittedRounding * abs(result_.energy))) {
+    result_.energy = known_energy(model, signal).known.energy;
+  }
   result_.dropped = first_count_ - signal.count();
   phase_ = Phase::kDone;
 }

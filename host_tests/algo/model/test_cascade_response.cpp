@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "emax/energy/known_energy.hpp"
+#include "emax/energy/refinement.hpp"
 #include "emax/energy/switching_signal.hpp"
 #include "emax/model/cascade_response.hpp"
 
@@ -90,6 +91,18 @@ TEST(CascadeResponse, OfAShortTimeIsTheSensorAlone) {
   EXPECT_EQ(answer.status, Status::kOk);
   EXPECT_NEAR(answer.known.energy, 1.037 * 1.037 * std::pow(w0_t, 4) * 1e-9 / 20.0,
               1e-4 * answer.known.energy);
+}
+
+TEST(Refinement, EndsOnAnEnergyThatKeepsItsDigits) {
+  // As above: a closed form of order 15 has none left.
+  const double w0_t = 2.0 * std::acos(-1.0) * 4073.0 * 1e-9;
+  const ModalModel model =
+      model_of(kPaperDevice, {15, 1000.0, 1.037}, Criterion::kIntegralSquareError);
+  SwitchingSignal signal{};
+  ASSERT_EQ(signal.set(Span<const double>(), 1e-9), Status::kOk);
+  static double scratch[kRefinementScratch];
+  const Refinement found = refine(model, signal, Span<double>(scratch));
+  EXPECT_NEAR(found.energy, 1.037 * 1.037 * std::pow(w0_t, 4) * 1e-9 / 20.0, 1e-4 * found.energy);
 }
 
 TEST(OneSidedResponse, HoldsUntilTheResponseTurns) {

@@ -23,8 +23,9 @@ class EnergyShape;
 
 /// How a refinement ended.
 struct Refinement {
-  double energy = 0.0;      ///< Of the refined signal, for a = 1.
-  std::size_t steps = 0;    ///< Newton steps taken.
+  double energy = 0.0;    ///< Of the refined signal, for a = 1; where the closed form loses digits,
+                          ///< that of `known_energy()`.
+  std::size_t steps = 0;  ///< Newton steps taken.
   std::size_t dropped = 0;  ///< Switches that met in pairs or left [0, T].
 };
 
