@@ -153,11 +153,28 @@ struct ReferenceValue {
   return {reference.sensitivity[0], reference.expanded_percent};
 }
 
-template <typename Change>
-[[gnu::noinline]] void change_sweep(Instrument& i, scpi::Call& call,
-                                    const Change& change) noexcept {
+[[gnu::noinline]] void take_reference(Instrument& i, scpi::Call& call,
+                                      const ReferenceValue& value) noexcept {
   SweepSettings next = i.sweep_settings();
-  change(next);
+  next.reference.sensitivity[0] = value.sensitivity;
+  next.reference.expanded_percent = value.expanded_percent;
+  next.reference.count = 1;
+  InstrumentCommands::take(i, call, next);
+}
+
+[[gnu::noinline]] void take_frequencies(Instrument& i, scpi::Call& call,
+                                        const std::array<double, kMaxPoints>& frequency_hz,
+                                        std::size_t count) noexcept {
+  SweepSettings next = i.sweep_settings();
+  next.frequency_hz = frequency_hz;
+  next.frequency_count = count;
+  InstrumentCommands::take(i, call, next);
+}
+
+[[gnu::noinline]] void take_value(Instrument& i, scpi::Call& call, const SettingField& field,
+                                  const SettingValue& value) noexcept {
+  SweepSettings next = i.sweep_settings();
+  store(field, value, &next);
   InstrumentCommands::take(i, call, next);
 }
 
@@ -197,7 +214,7 @@ void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t in
   SettingValue value;
   if (SettingCall(call, command, field, &i.sweep_settings())
           .take(default_number(i, field), value)) {
-    change_sweep(i, call, [&](SweepSettings& next) noexcept { store(field, value, &next); });
+    take_value(i, call, field, value);
   }
 }
 
@@ -238,11 +255,7 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
       (call.has_more() && !call.number(percent, value.expanded_percent))) {
     return;
   }
-  change_sweep(i, call, [&](SweepSettings& next) noexcept {
-    next.reference.sensitivity[0] = value.sensitivity;
-    next.reference.expanded_percent = value.expanded_percent;
-    next.reference.count = 1;
-  });
+  take_reference(i, call, value);
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
@@ -258,19 +271,13 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
   std::array<double, kMaxPoints> frequency_hz = {};
   std::size_t count = 0;
   if (call.numbers(kFrequency, Span<double>(frequency_hz), count)) {
-    change_sweep(i, call, [&](SweepSettings& next) noexcept {
-      next.frequency_hz = frequency_hz;
-      next.frequency_count = count;
-    });
+    take_frequencies(i, call, frequency_hz, count);
   }
 }
 
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
   const SweepSettings by_default = i.default_sweep();
-  change_sweep(i, call, [&](SweepSettings& next) noexcept {
-    next.frequency_hz = by_default.frequency_hz;
-    next.frequency_count = by_default.frequency_count;
-  });
+  take_frequencies(i, call, by_default.frequency_hz, by_default.frequency_count);
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {
