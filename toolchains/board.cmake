@@ -17,7 +17,8 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   RUNNER <word>...       Begins a command line that runs an image as if it were a program of this PC:
 #                          <word>... [--console null|tcp:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]. Without it,
 #                          nothing of the board is run in the tests. common/qemu.py makes one of QEMU.
-#   FLASH <word>...        The command that puts the product on the board, with @IMAGE@ for its path: target `flash`.
+#   FLASH <word>...        The command that puts the product on the board, with @IMAGE@ for its path: target `flash`. Then
+#                          there are a .bin and a .hex of it, too.
 #   COUNTER <file>         Counts instructions for the image of the costs (emax/board/instruction_counter.hpp),
 #   INSTRUCTION_NS <n>     while the runner lets each take so much of the machine's time.
 #   CORE_TITLE <word>      In the tables of firmware/README.md: the core,

@@ -55,6 +55,15 @@ emax_gate_image(${product} RUN)
 if(EMAX_BOARD_FLASH)
   list(TRANSFORM EMAX_BOARD_FLASH REPLACE "@IMAGE@" "$<TARGET_FILE:${product}>" OUTPUT_VARIABLE command)
   add_custom_target(flash COMMAND ${command} DEPENDS ${product} USES_TERMINAL VERBATIM)
+  # For tools that take no ELF file, as a probe that shows itself as a drive.
+  foreach(format IN ITEMS binary:bin ihex:hex)
+    string(REPLACE ":" ";" format ${format})
+    list(POP_BACK format suffix)
+    add_custom_command(TARGET ${product} POST_BUILD
+      COMMAND ${CMAKE_OBJCOPY} -O ${format} $<TARGET_FILE:${product}> ${PROJECT_BINARY_DIR}/${product}.${suffix}
+      BYPRODUCTS ${PROJECT_BINARY_DIR}/${product}.${suffix}
+      VERBATIM)
+  endforeach()
 endif()
 
 if(NOT EMAX_BOARD_SEMIHOSTING)
