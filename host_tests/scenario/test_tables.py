@@ -19,7 +19,11 @@ PLAIN = {"S": 1.035912, "f0": 4065.30, "beta": 0.316358}
 U_PLAIN = {"S": 0.0009, "f0": 4.04, "beta": 0.00097}
 
 
-class Tables(ProgramTest):
+# Light damping with wide uncertainties takes minutes of trials: these are run by hand.
+ByHand = ProgramTest
+
+
+class Tables:
     def fit(self, name, *options):
         return self.json_of("--points", TABLES / name, *QUICK, *options)
 
@@ -31,7 +35,7 @@ class Tables(ProgramTest):
         return self.refuse(["report", "--points", TABLES / name, *QUICK, *options], name, *words)
 
 
-class TablesOfOneDevice(Tables):
+class TablesOfOneDevice(Tables, ProgramTest):
     def test_the_same_points_in_other_forms(self):
         forms = {
             "plain.csv": "read as Hz, V/(m/s2), deg; 40 points",
@@ -85,7 +89,7 @@ class TablesOfOneDevice(Tables):
         self.assertAlmostEqual(results["model"]["f0"], 4073, delta=0.01)
 
 
-class TablesOfPiezos(Tables):
+class TablesOfPiezos(Tables, ByHand):
     def test_decimal_commas(self):
         for name, form in [("tabs_decimal_comma.csv", "tabs"), ("semicolons_decimal_comma.csv", "semicolons")]:
             results = self.fit(name)
@@ -167,7 +171,7 @@ def table_rows():
     return [[float(cell) for cell in line.split(",")] for line in lines]
 
 
-class TablesThereAndBack(Tables):
+class TablesThereAndBack(Tables, ProgramTest):
     def assert_same_fit(self, header, rows, delta=1e-12, separator=",", decimal="."):
         lines = [header] + [separator.join(f"{cell!r}".replace(".", decimal) for cell in row) for row in rows]
         results = self.json_of("--points", self.write(lines, end="\r\n"), *QUICK)
@@ -222,7 +226,7 @@ class TablesThereAndBack(Tables):
         self.assertIn("A delay of 0.53 ms of the device's channel would bring chi2/dof from", text)
 
 
-class TablesByChance(Tables):
+class TablesByChance(Tables, ByHand):
     """Devices far above their points, drawn ten times each."""
 
     FREQUENCIES = [20, 31.5, 63, 125, 160, 250, 500, 630, 800, 1000, 1250, 1600, 2000, 2500, 3150, 4000, 5000, 6300,
@@ -252,7 +256,7 @@ class TablesByChance(Tables):
             self.assertGreaterEqual(sum(inside), len(inside) - 3, device)
 
 
-class TablesThatAreRefused(Tables):
+class TablesThatAreRefused(Tables, ProgramTest):
     HEADER = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"
     ROW = "100,1.03,-1,0.01,1"
 
