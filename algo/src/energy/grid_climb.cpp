@@ -45,8 +45,11 @@ Compared compare(std::size_t word, float limit, Span<const float> product) noexc
   const std::size_t first = Signs::kBits * word;
   const std::size_t left = product.size() - first;
   const std::size_t count = left < Signs::kBits ? left : Signs::kBits;
-  const float* const end = product.data() + first + count;
   Compared result;
+  if (count == 0) {  // A shift by all bits of a word is not defined.
+    return result;
+  }
+  const float* const end = product.data() + first + count;
   for (const float* value = end - count; value != end; ++value) {
     const auto bits = __builtin_bit_cast(std::uint32_t, *value);
     result.negative = result.negative >> 1 | (bits & kHighest);

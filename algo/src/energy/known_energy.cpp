@@ -23,8 +23,8 @@ double size(Complex z) noexcept { return sqrt(norm(z)); }
 double energy_rounding(const ModalModel& model, double duration_s, std::size_t switches,
                        double energy) noexcept {
   const Span<const Mode> modes = model.modes();
-  double settled[kMaxModes];
-  double state[kMaxModes];
+  double settled[kMaxModes] = {};
+  double state[kMaxModes] = {};
   for (std::size_t i = 0; i < modes.size(); ++i) {
     settled[i] = size(modes[i].residue) * size(model.inverse_pole(i));
     // A state is at most the integral of its decay, and the difference of two numbers like 1/p.

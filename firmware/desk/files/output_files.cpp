@@ -261,8 +261,10 @@ bool OutputFiles::finish_moves(const std::string& from) {
     }
   }
   for (const std::string& name : desk::names_in(from, "")) {
+    std::string source = from;
+    source += "/" + name;
     if (name != kDropped && !desk::is_irregular(path_of(name)) &&
-        std::rename((from + "/" + name).c_str(), path_of(name).c_str()) != 0) {
+        std::rename(source.c_str(), path_of(name).c_str()) != 0) {
       return false;
     }
   }

@@ -170,7 +170,9 @@ class Sequencer {
   /// Memory for somebody else's work while nothing runs; anything may be in it.
   template <typename Work>
   Work& borrow() noexcept {
-    static_assert(sizeof(Work) <= sizeof(Workspace) && alignof(Work) <= alignof(Workspace));
+    static_assert(sizeof(Work) <= sizeof(Workspace));
+    // NOLINTNEXTLINE(misc-redundant-expression): the two are equal for some types only.
+    static_assert(alignof(Work) <= alignof(Workspace));
     static_assert(std::is_trivially_copyable_v<Work> && std::is_trivially_destructible_v<Work>);
     has_fixed_point_ = false;
     return *static_cast<Work*>(static_cast<void*>(&workspace_));
