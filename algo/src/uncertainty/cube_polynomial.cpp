@@ -80,7 +80,7 @@ void CubeNodes::add(std::size_t index, double value, Span<double> coefficients) 
 }
 
 void to_powers(std::size_t degree, Span<double> coefficients) noexcept {
-  double chebyshev[cube_terms(kMaxCubeDegree)];
+  double chebyshev[cube_terms(kMaxCubeDegree)] = {};
   for (std::size_t place = 0; place < cube_terms(degree); ++place) {
     chebyshev[place] = coefficients[place];
   }

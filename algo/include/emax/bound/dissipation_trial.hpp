@@ -30,7 +30,7 @@ class DissipationTrial {
  private:
   static constexpr std::size_t kPairs = kMaxModes * (kMaxModes + 1) / 2;
 
-  void fill_row(const FloatComplex* input, FloatComplex* row) const noexcept;
+  void fill_row(const FloatComplex* b, FloatComplex* row) const noexcept;
   bool advance(const FloatComplex* first, const FloatComplex* second) noexcept;
 
   FloatComplex decay_[kMaxModes] = {};

@@ -37,7 +37,7 @@ class BranchPool {
   /// Sets a signal to a branch, with the duration that it is given.
   ///
   /// @param scratch kMaxSwitches doubles.
-  void load(std::size_t branch, double duration_s, Span<double> scratch,
+  void load(std::size_t index, double duration_s, Span<double> scratch,
             SwitchingSignal& signal) const noexcept;
   /// Later branches move up.
   void remove(std::size_t branch) noexcept;
@@ -46,7 +46,7 @@ class BranchPool {
     return (branches_[branch].known >> place & 1U) != 0;
   }
   /// Takes the energy of a branch at a place.
-  void know(std::size_t branch, std::size_t place, double energy) noexcept;
+  void know(std::size_t index, std::size_t place, double energy) noexcept;
 
   /// Takes a signal that is refined at a place, unless it is known or low. If there is no room, the
   /// one that comes least near to the best has to go, be it this one.
