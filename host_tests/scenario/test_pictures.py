@@ -294,11 +294,12 @@ class Pictures(PictureTest, ProgramTest):
         for name in ["signal", "histogram", "trend"]:
             self.assertIn(conditions, " ".join(texts_of(self.out(f"{name}.svg"))), name)
         # The square root of a difference of energies is no rms value.
-        shown = [*texts_of(self.out("signal.svg")), self.content("report.html"), self.content("report.txt")]
-        self.assertFalse(any("rms error" in text for text in shown))
-        self.assertTrue(all("√(E/T)" in text for text in [" ".join(shown[:10]), shown[-2]]))
-        self.assertIn("by the paper's method: other signals may reach more.", shown[-2])
-        self.assertIn("Largest energy difference within the device's uncertainty", shown[-2])
+        section = self.content("report.txt").partition("MAXIMUM ENERGY")[2].partition("IN-BAND ERROR")[0]
+        page, picture = self.content("report.html"), " ".join(texts_of(self.out("signal.svg")))
+        self.assertEqual(["rms error" in text for text in [section, picture]], [False, False])
+        self.assertEqual(["sqrt(E/T)" in section, "√(E/T)" in page, "√(E/T)" in picture], [True] * 3)
+        self.assertIn("by the paper's method: other signals may reach more.", page)
+        self.assertIn("Largest energy difference at the estimates, E", page)
         self.report(*MODEL, *TREND)
         self.assertIn("rms error", " ".join(texts_of(self.out("signal.svg"))))
         self.assertNotIn("method", " ".join(texts_of(self.out("signal.svg"))))
@@ -607,7 +608,8 @@ class Page(PageTest, ProgramTest):
         tables = self.browser.evaluate(
             "[...document.querySelectorAll('table.numbers')].map(table => [...table.rows].map(row => row.cells.length))"
         )
-        self.assertEqual(tables, [[10] * 44, [6] * 4, [3] * 6])
+        # Figures, budget, fit, trend.
+        self.assertEqual(tables, [[4] * 5, [10] * 44, [6] * 4, [3] * 6])
         figures = self.browser.evaluate(
             "[...document.querySelectorAll('figure')].map("
             "figure => [figure.parentElement.id, figure.querySelector('figcaption').textContent.length > 40])"
@@ -622,15 +624,21 @@ class Page(PageTest, ProgramTest):
         headline = self.browser.evaluate(
             "[...document.querySelectorAll('.headline dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
         )
-        monte_carlo, energy = results["monte_carlo"], results["energy"]
-        self.assertEqual(headline[0], f"{1e3 * monte_carlo['E_max']:.4f} × 10−3 V² s")
-        self.assertEqual(headline[1], f"{1e3 * energy['E']:.4f} × 10−3 V² s")
-        self.assertEqual(headline[2], f"{1e3 * monte_carlo['u']:.4f} × 10−3 V² s")
-        low, high = (f"{1e3 * value:.4f}" for value in monte_carlo["interval"])
-        self.assertEqual(headline[3], f"{low} to {high} × 10−3 V² s")
+        energy, band, known = results["energy"], results["band"], results["uncertainty"]
+        for shown, figure, decimals in [(headline[0], band["matched"], 3), (headline[1], band, 3)]:
+            self.assertEqual(shown, f"{figure['rms_percent']:.{decimals}f} % ± {figure['U_percent']:.{decimals}f} % of S a")
         percent = 100 * energy["rms"] / (1.037 * 1.037)
-        self.assertEqual(headline[4], f"{energy['rms']:.5g} V = {percent:.4g} % of S a")
-        self.assertEqual(headline[5], f"{math.ceil(1e7 * energy['bound']) / 1e4:.4f} × 10−3 V² s")  # Not below it.
+        # Linear in so small a u: sqrt(E) by half of what E varies by.
+        U = percent * known["U"] / (2 * energy["E"])
+        self.assertEqual(headline[2], f"{percent:.2f} % ± {U:.2f} % of S a; an ideal sensor: "
+                                      f"{results['ideal']['rms_percent']:.4g} %")
+        self.assertEqual(headline[3], f"{1e3 * energy['E']:.4f} × 10−3 V² s")
+        self.assertEqual(headline[4], f"{1e3 * known['u']:.4f} × 10−3 V² s")
+        self.assertEqual(headline[5], f"{1e3 * known['U']:.4f} × 10−3 V² s")
+        low, high = (f"{1e3 * value:.4f}" for value in known["interval"])
+        self.assertEqual(headline[6], f"{low} to {high} × 10−3 V² s")
+        self.assertEqual(headline[7], f"{math.ceil(1e7 * energy['bound']) / 1e4:.4f} × 10−3 V² s")  # Not below it.
+        self.assertEqual(headline[8], f"{1e3 * results['monte_carlo']['E_max']:.4f} × 10−3 V² s")
 
     def test_lines_of_the_title(self):
         self.report(*MODEL, *QUICK)

@@ -360,7 +360,12 @@ class Options(ProgramTest):
         scaled = birge["monte_carlo"]["u"] / plain["monte_carlo"]["u"]
         self.assertAlmostEqual(scaled / ratio, 1.0, delta=0.05)
         self.assertIn("times the Birge ratio, 10.3", self.succeed("report", *table, "--birge"))
-        self.refuse(["report", "--model", "1.037,4073,0.3182,0.003,6,0.06", "--distribution", "normal"], "damping")
+
+    def test_normal_draws_that_are_no_device_are_made_again(self):
+        model = ["--model", "1.037,4073,0.3182,0.003,6,0.2", *QUICK]
+        # 5.61 % of the draws of beta are below 0.0001 or not below 1: 59 in 1000, with a deviation of 8.
+        self.assertAlmostEqual(self.json_of(*model)["uncertainty"]["redrawn"], 59, delta=4 * 8)
+        self.assertRegex(self.succeed("report", *model), r"WARNING: that is more than 1 %; E is not\s+normal")
 
     def test_paper_method(self):
         # The plain fixed point from Phi's first column, step 2 us: at rest after 6 iterations.

@@ -98,7 +98,7 @@ bool TcpStream::is_left() noexcept {
   return client_ >= 0 && has_closed(client_) && is_ready(listener_, POLLIN);
 }
 
-// Whether a new client may wait for the end of this session, so that none is turned away for one
+// Whether a new client may wait for the end of this connection, so that none is turned away for one
 // that has gone.
 bool TcpStream::is_about_to_end(Wishes wishes) const noexcept {
   const bool is_stuck = wishes.to_write && SteadyClock::now() - last_transfer_ > kPatience;

@@ -112,8 +112,9 @@ std::string short_name_of(const Result& result, std::size_t most) {
   if (characters_in(name) <= most || result.serial.empty()) {
     return cut(name, static_cast<double>(most), Typeface::kMonospaced);
   }
+  const std::size_t half = most / 2;
   const std::string serial =
-      cut(printable(result.serial), static_cast<double>(most / 2), Typeface::kMonospaced);
+      cut(printable(result.serial), static_cast<double>(half), Typeface::kMonospaced);
   const std::size_t rest = most - characters_in(serial) - 1;
   return cut(printable(result.device), static_cast<double>(rest), Typeface::kMonospaced) + " " +
          serial;

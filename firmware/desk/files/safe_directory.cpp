@@ -96,7 +96,9 @@ std::vector<std::string> names_in(const std::string& directory, const std::strin
 
 void remove_flat(const std::string& directory) noexcept {
   for (const std::string& name : names_in(directory, "")) {
-    (void)unlink((directory + "/" + name).c_str());
+    std::string path = directory;
+    path += "/" + name;
+    (void)unlink(path.c_str());
   }
   (void)rmdir(directory.c_str());
 }

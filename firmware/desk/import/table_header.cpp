@@ -24,8 +24,7 @@ constexpr std::string_view kAmplitudeWords[] = {"a",
                                                 "empfindlichkeit",
                                                 "betrag",
                                                 "k",
-                                                "\xC3\xBC"
-                                                "bertragungskoeffizient",
+                                                "\303\274bertragungskoeffizient",
                                                 "response",
                                                 "sensibilit\xC3\xA9"};
 constexpr std::string_view kPhaseWords[] = {

@@ -239,7 +239,7 @@ Problem run_report(Span<const std::string_view> arguments) {
     return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
   }
   Problem remark;
-  const Problem unwritten =
+  Problem unwritten =
       files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
   // A measurement that no file holds is at least printed.
   if (unwritten && !(unwritten.status == ExitStatus::kFault && options.measures())) {

@@ -54,7 +54,7 @@ void write_row(const Row& row, ReportWriter& out) noexcept {
   out.cell(0).text("  ").left(kNameWidth).text(row.name);
   out.cell(kNumberWidth).fixed(row.percent, decimals);
   if (has_u) {
-    out.cell(kNumberWidth).fixed(rounded_up(row.expanded, decimals), decimals);
+    out.cell(kNumberWidth).fixed(row.expanded, decimals);
   } else {
     out.cell(kNumberWidth).text("-");
   }
