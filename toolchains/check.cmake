@@ -79,10 +79,15 @@ file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
 # Of the sources of boards, those that the PC's tests build too.
 file(GLOB common RELATIVE ${PROJECT_SOURCE_DIR} host_tests/boards/test_*.cpp)
 list(TRANSFORM common REPLACE "host_tests/boards/test_(.*)" "firmware/boards/common/src/\\1")
-# cmake --build build/check --target tidy, by hand: some of the newest sources have findings that are still open.
+foreach(source IN LISTS tidied common)
+  add_test(NAME style.tidy.${source}
+    COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${PROJECT_SOURCE_DIR}/build/host-clang
+      ${PROJECT_SOURCE_DIR}/${source})
+endforeach()
+# cmake --build build/check --target analyze, by hand: with the analyzer it takes four times as long.
 list(TRANSFORM tidied PREPEND ${PROJECT_SOURCE_DIR}/)
 list(TRANSFORM common PREPEND ${PROJECT_SOURCE_DIR}/)
-add_custom_target(tidy
+add_custom_target(analyze
   COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-clang ${tidied} ${common} VERBATIM)
 
 get_property(tests DIRECTORY PROPERTY TESTS)
