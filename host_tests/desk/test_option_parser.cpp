@@ -85,6 +85,7 @@ TEST(OptionParser, NamesWhatIsWrong) {
   EXPECT_EQ(command.parse({"--fast=1"}), "--fast: takes no value; expected just --fast");
   EXPECT_EQ(command.parse({"--leve=1"}), "--leve: unknown option; did you mean --level?");
   EXPECT_EQ(command.parse({"--hlep"}), "--hlep: unknown option; did you mean --help?");
+  EXPECT_EQ(command.parse({"--xyzzy=4"}), "--xyzzy: unknown option; --help lists them");
   for (const char* stray : {"2", "-f", "--", "-", ""}) {
     EXPECT_EQ(command.parse({stray}), std::string(stray) + ": unexpected argument; expected " +
                                           "options, such as --level 2");

@@ -386,6 +386,7 @@ class BadOptions(ProgramTest):
     def test_commands(self):
         self.refuse([], "emax: ", "expected emax report")
         self.refuse(["reprot"], "emax: reprot: ", "did you mean emax report?")
+        self.refuse(["bananas"], "emax: bananas: unknown command; emax --help lists them")
         self.refuse(["--json"], "emax: --json: ", "emax report")
         self.refuse(["scpi", "a"], "emax: a: unexpected argument", "expected options, such as --tcp 5025")
         self.refuse(["certify"], "emax: certify: no device; ", "expected --model S,f0,beta or --points FILE")

@@ -105,7 +105,8 @@ const char* explain(Status status) noexcept {
       return "The delayed filter is not exact enough for an error as small as this; take a higher "
              "order, or take no delay out.";
     case Status::kLostDigits:
-      return "The error is so small beside the outputs it is the difference of that rounding hides "
+      return "The error is the difference of two outputs, and so small beside them that rounding "
+             "hides "
              "it; lengthen the time or take another cutoff or order.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";

@@ -71,8 +71,10 @@ Problem unknown_command(Span<const Command> commands, std::string_view name) {
   for (const Command& command : commands) {
     names.emplace_back(command.name);
   }
-  return bad_input(words + "command; did you mean emax " +
-                   std::string(nearest(name, Arguments(names.data(), names.size()))) + "?");
+  const std::string_view meant = nearest(name, Arguments(names.data(), names.size()));
+  return bad_input(words + (meant.empty()
+                                ? "command; emax --help lists them"
+                                : "command; did you mean emax " + std::string(meant) + "?"));
 }
 
 }  // namespace

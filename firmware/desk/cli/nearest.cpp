@@ -34,13 +34,22 @@ std::size_t distance(std::string_view text, std::string_view name) {
   return row.back();
 }
 
+std::string_view without_dashes(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of('-'), text.size()));
+  return text;
+}
+
 }  // namespace
 
 std::string_view nearest(std::string_view text, Span<const std::string_view> names) {
-  text = text.substr(0, kMaxLength);
-  std::string_view best = names[0];
+  text = without_dashes(text).substr(0, kMaxLength);
+  // With more changes than half its characters nearly every text becomes some name.
+  std::size_t least = std::max(text.size() / 2, std::size_t{1}) + 1;
+  std::string_view best;
   for (const std::string_view name : names) {
-    if (distance(text, name) < distance(text, best)) {
+    const std::size_t changes = distance(text, without_dashes(name));
+    if (changes < least) {
+      least = changes;
       best = name;
     }
   }

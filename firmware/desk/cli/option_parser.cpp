@@ -25,8 +25,9 @@ Problem unknown_option(std::string_view argument, const Syntax& syntax) {
   const std::vector<std::string_view> views(names.begin(), names.end());
   const std::string_view meant =
       nearest(argument, Span<const std::string_view>(views.data(), views.size()));
-  return bad_input(printable(argument) + ": " + syntax.unknown + "; did you mean " +
-                   std::string(meant) + "?");
+  return bad_input(
+      printable(argument) + ": " + syntax.unknown +
+      (meant.empty() ? "; --help lists them" : "; did you mean " + std::string(meant) + "?"));
 }
 
 Problem no_value(const Option& option) {

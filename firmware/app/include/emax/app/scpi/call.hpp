@@ -15,7 +15,6 @@ namespace emax::app::scpi {
 inline constexpr const char kHertz[] = "HZ";
 inline constexpr const char kSecond[] = "S";
 inline constexpr const char kVolt[] = "V";
-inline constexpr const char kVoltPerSecond[] = "V/S";
 inline constexpr const char kMetrePerSecondSquared[] = "M/S2";
 inline constexpr const char kPercent[] = "PCT";
 inline constexpr const char kDegree[] = "DEG";

@@ -54,10 +54,8 @@ class MessageScanner {
   };
 
   Event next_of_text(char byte) noexcept;
-  Event next_of_string(char byte) noexcept;
   void begin_block(char byte) noexcept;
   void add_length_digit(char byte) noexcept;
-  bool takes_any_byte() noexcept;
 
   State state_ = State::kBeforeHeader;
   char quote_ = '\0';

@@ -87,7 +87,7 @@ class Sequencer {
   void take(const Identification& identification) noexcept;
   /// The device that these points give.
   void take(const FrequencyResponse& points) noexcept;
-  /// The device that the points give which are there, in place of one by its parameters.
+  /// The device that the points at hand give, in place of one by its parameters.
   ///
   /// @returns Whether that is a change.
   bool take_points() noexcept;

@@ -276,8 +276,8 @@ constexpr bool is_same_text(const char* a, const char* b) noexcept {
   return *a == *b;
 }
 
-/// @returns The index of the setting of that name; in a constant expression a name that there is
-/// not does not compile.
+/// @returns The index of the setting of that name; in a constant expression a name that no setting
+/// has does not compile.
 template <std::size_t kRows>
 constexpr std::size_t row_of(const SettingRow (&rows)[kRows], const char* name) noexcept {
   std::size_t index = 0;
