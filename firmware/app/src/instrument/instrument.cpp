@@ -105,7 +105,7 @@ void Instrument::reset_settings() noexcept {
 }
 
 SweepSettings Instrument::default_sweep() const noexcept {
-  return board_.bench != nullptr ? *board_.bench : default_sweep_settings();
+  return board_.bench != nullptr ? board_.bench() : default_sweep_settings();
 }
 
 void Instrument::restart_random() noexcept {

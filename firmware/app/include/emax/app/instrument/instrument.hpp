@@ -37,7 +37,7 @@ struct Board {
   const char* name = "";  ///< The second field of *IDN?.
   const char* serial = "0";
   /// The defaults of the sweep; null for `default_sweep_settings()`.
-  const SweepSettings* bench = nullptr;
+  SweepSettings (*bench)() noexcept = nullptr;
   /// What a simulated bench was built from, for the report; null for a real one.
   const SimulatedBench* simulated = nullptr;
   /// Null where the board does not know.
