@@ -41,7 +41,7 @@ constexpr std::uint32_t kMostErase_us = 100'000;
 constexpr std::uint32_t kMostProgram_us = 1'000;
 
 std::uintptr_t address_of(std::uint32_t slot, std::uint32_t offset) noexcept {
-  return kFlashBank2 + std::uintptr_t{slot} * kFlashPageBytes + offset;
+  return kFlashBank2 + std::uintptr_t{slot} * kPagesPerSlot * kFlashPageBytes + offset;
 }
 
 std::uint32_t word_of(const std::uint8_t* bytes) noexcept {
@@ -79,6 +79,17 @@ bool close(std::uint32_t most_us) noexcept {
   return is_done;
 }
 
+bool erase_page(std::uint32_t page) noexcept {
+  if (!open()) {
+    (void)close(0);
+    return false;
+  }
+  const std::uint32_t what = kErasePage | page << kPageAt | kBank2;
+  reg(kControl) = what;
+  reg(kControl) = what | kStart;
+  return close(kMostErase_us);
+}
+
 }  // namespace
 
 bool G474FlashStore::take_read_error() noexcept {
@@ -109,14 +120,12 @@ Status G474FlashStore::do_read(std::uint32_t slot, std::uint32_t offset,
 }
 
 Status G474FlashStore::do_erase(std::uint32_t slot) noexcept {
-  if (!open()) {
-    (void)close(0);
-    return Status::kHardwareFault;
+  for (std::uint32_t i = 0; i < kPagesPerSlot; ++i) {
+    if (!erase_page(slot * kPagesPerSlot + i)) {
+      return Status::kHardwareFault;
+    }
   }
-  const std::uint32_t what = kErasePage | slot << kPageAt | kBank2;
-  reg(kControl) = what;
-  reg(kControl) = what | kStart;
-  return close(kMostErase_us) ? Status::kOk : Status::kHardwareFault;
+  return Status::kOk;
 }
 
 Status G474FlashStore::do_program(std::uint32_t slot, std::uint32_t offset,

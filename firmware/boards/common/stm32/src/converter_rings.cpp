@@ -53,7 +53,7 @@ RingState ConverterRings::settle(const RingLook& look) noexcept {
 RingState ConverterRings::look(const RingLook& look) noexcept {
   const std::uint32_t expected = look.clock_frames - input_lag_;
   const std::uint32_t input = nearest(look.input_left, expected);
-  const std::uint32_t output_expected = input + output_lead_;
+  const std::uint32_t output_expected = expected + output_lead_;
   const bool has_moved = input != input_;
   input_ = input;
   const std::int32_t drift = difference(input, expected);

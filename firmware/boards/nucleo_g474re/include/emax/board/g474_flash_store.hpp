@@ -11,12 +11,15 @@
 namespace emax::board {
 
 inline constexpr std::uint32_t kFlashPageBytes = 2048;
-static_assert(kStoreFormat.slot_bytes <= kFlashPageBytes);
+inline constexpr std::uint32_t kFlashPagesPerBank = 128;
+inline constexpr std::uint32_t kPagesPerSlot =
+    (kStoreFormat.slot_bytes + kFlashPageBytes - 1) / kFlashPageBytes;
+static_assert(kStoreFormat.slot_count * kPagesPerSlot <= kFlashPagesPerBank);
 static_assert(kStoreFormat.unit_bytes == 8, "the memory programs double words");
 
-/// Slot n is page n of bank 2; code runs on in bank 1 while a page is erased, for 25 ms, or
-/// programmed. What a power cut has left half programmed, the memory cannot correct: it raises the
-/// interrupt that cannot be masked, and the read is a fault.
+/// A slot is a page of bank 2, or more where one is too small; code runs on in bank 1 while a page
+/// is erased, for 25 ms, or programmed. What a power cut has left half programmed, the memory
+/// cannot correct: it raises the interrupt that cannot be masked, and the read is a fault.
 class G474FlashStore final : public hal::Store {
  public:
   constexpr G474FlashStore() noexcept : Store(kStoreFormat) {}
