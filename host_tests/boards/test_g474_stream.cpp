@@ -1,17 +1,24 @@
 // The driver of the NUCLEO-G474RE's converters, run on the PC over fake registers: it keeps the
 // contract of an analog stream, and tells what goes wrong with the hardware within two blocks.
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <gtest/gtest.h>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "emax/app/base/in_place.hpp"
+#include "emax/app/instrument/instrument.hpp"
 #include "emax/board/g474_stream.hpp"
 
 #include "boards/fakes/fake_converters.hpp"
 #include "hal/stream_conformance.hpp"
+#include "support/manual_clock.hpp"
+#include "support/memory_byte_stream.hpp"
 
 namespace emax::test {
 namespace {
@@ -169,6 +176,52 @@ TEST_F(RunningStream, LeadsTheDriveToZeroWhateverRuns) {
   EXPECT_FALSE(stream().running());
   EXPECT_EQ(bench_.drive().last, 0);
   EXPECT_LE(bench_.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
+}
+
+/// What the board's README says of a wire from the drive to both inputs.
+TEST(G474Sweep, FindsTheReferenceItselfThroughAWire) {
+  Bench bench(StreamFault::kNone, 0);
+  bench.chip().set_access_cycles(170);
+  bench.chip().set_noisy(true);
+  app::SweepSettings settings = app::default_sweep_settings();
+  settings.drive_limit_v = 1.4;
+  settings.skew_s = 0.0;
+  settings.reference_gain = 1.0;
+  MemoryByteStream console(1U << 20U);
+  ManualClock clock;
+  static app::InPlace<app::Instrument> memory;
+  const app::Ports ports = {bench.stream(), console, clock, nullptr, nullptr};
+  const app::Board board = {"test", "0", &settings, nullptr, nullptr};
+  app::Instrument& instrument = memory.make(ports, board);
+  instrument.start();
+  console.send("SENS:REF:SENS 1.02;:SENS:SWE:FREQ 100,500,1000,2000,5000;:INIT;*OPC?\n");
+  constexpr int kMostPolls = 200'000;
+  std::string answers;
+  for (int poll = 0; poll < kMostPolls && answers != "1\n"; ++poll) {
+    clock.wait_us(1000);
+    instrument.poll();
+    answers += console.receive();
+  }
+  EXPECT_EQ(answers, "1\n");
+  EXPECT_TRUE(bench.stream().drive_is_at_zero());
+  console.send("SYST:ERR?;:FETC:FRES?\n");
+  for (int poll = 0; poll < 1000; ++poll) {
+    instrument.poll();
+  }
+  std::stringstream answer(console.receive());
+  std::string error;
+  std::getline(answer, error, ';');
+  EXPECT_EQ(error, "0,\"No error\"");
+  std::vector<double> values;
+  for (std::string field; std::getline(answer, field, ',');) {
+    values.push_back(std::strtod(field.c_str(), nullptr));
+  }
+  ASSERT_EQ(values.size(), 1U + 5U * 5U);
+  for (std::size_t point = 0; point < 5; ++point) {
+    // Noise of 8 of 20000 codes, over a hundred periods or more.
+    EXPECT_NEAR(values[2 + 5 * point], 1.02, 1e-3) << point;
+    EXPECT_NEAR(values[3 + 5 * point], 0.0, 0.05) << point;
+  }
 }
 
 TEST(G474StreamStart, EndsWhenTheCalibrationNeverDoes) {

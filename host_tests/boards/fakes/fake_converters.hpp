@@ -22,17 +22,20 @@ namespace emax::test {
 class FakeConverters final : public FakeChip {
  public:
   static constexpr std::uint64_t kCyclesPer_us = 170;
-  static constexpr std::uint64_t kAccessCycles = 4;
 
   /// @param[in] is_dac_ahead The DAC asks for its first value before the first trigger.
   FakeConverters(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false)
       : fault_(fault), at_frame_(at_frame), is_dac_ahead_(is_dac_ahead) {}
 
+  /// An access takes this long: more makes a long run short.
+  void set_access_cycles(std::uint64_t cycles) { access_cycles_ = cycles; }
   /// The handler of the output's DMA.
   void set_output_interrupt(std::function<void()> handler) { handler_ = std::move(handler); }
 
   const DriveProbe& drive() const { return drive_; }
   double now_s() const { return static_cast<double>(cycles_) / (1e6 * double{kCyclesPer_us}); }
+  /// Results are as those of converters with some noise: within 8 codes of 16 bits.
+  void set_noisy(bool is_noisy) { is_noisy_ = is_noisy; }
   /// The program does something else.
   void spend_us(std::uint64_t us) { pass(us * kCyclesPer_us); }
   /// Nothing that takes time ever ends, or no trigger comes any more.
@@ -45,7 +48,7 @@ class FakeConverters final : public FakeChip {
   void set_overrun() { registers_[board::kAdc2] |= 1U << 4; }
 
   std::uint32_t read(std::uintptr_t address, unsigned /*bytes*/) override {
-    pass(kAccessCycles);
+    pass(access_cycles_);
     if (address == 0x40000024) {
       return static_cast<std::uint32_t>(cycles_ / kCyclesPer_us);
     }
@@ -53,7 +56,7 @@ class FakeConverters final : public FakeChip {
   }
 
   void write(std::uintptr_t address, std::uint32_t value) override {
-    pass(kAccessCycles);
+    pass(access_cycles_);
     switch (address) {
       case board::kDma1 + 0x04:
         registers_[board::kDma1] &= ~value;
@@ -162,8 +165,18 @@ class FakeConverters final : public FakeChip {
     }
     conversion_end_ = 0;
     if (is_on(kInputChannel) && registers_[board::kDmamux] == 5) {
-      *next_of(kInputChannel) = converted_ << 16U | converted_;
+      const std::uint32_t device = with_noise(converted_);
+      *next_of(kInputChannel) = device << 16U | with_noise(converted_);
     }
+  }
+
+  std::uint32_t with_noise(std::uint32_t code) {
+    if (!is_noisy_) {
+      return code;
+    }
+    noise_ = noise_ * 1664525U + 1013904223U;  // A generator of Numerical Recipes.
+    const std::uint32_t above = code + (noise_ >> 28U);
+    return std::clamp(above, 8U, 65535U + 8U) - 8U;
   }
 
   void fetch() {
@@ -249,13 +262,16 @@ class FakeConverters final : public FakeChip {
   std::uint64_t at_frame_;
   bool is_dac_ahead_;
   DriveProbe drive_;
+  std::uint64_t access_cycles_ = 4;
   std::uint64_t cycles_ = 1;
   std::uint64_t next_trigger_ = 0;
   std::uint64_t conversion_end_ = 0;
   std::uint64_t triggers_ = 0;
   std::uint32_t converted_ = 0;
   std::uint32_t lost_frames_ = 0;
+  std::uint32_t noise_ = 1;
   bool is_deaf_ = false;
+  bool is_noisy_ = false;
   bool is_calibration_held_ = false;
   bool are_triggers_dead_ = false;
   bool are_inputs_halved_ = false;

@@ -74,7 +74,8 @@ app::SweepSettings bench_of_board() noexcept {
   return bench;
 }
 
-constexpr app::Board kAbout = {EMAX_BOARD_NAME, serial.data(), bench_of_board, nullptr, nullptr};
+constexpr app::Board kAbout = {EMAX_BOARD_NAME, serial.data(), nullptr,
+                               nullptr,         nullptr,       bench_of_board};
 
 void show(bool is_on) noexcept { reg(kPinSetReset) = is_on ? 1U << kLedPin : 1U << (kLedPin + 16); }
 

@@ -37,11 +37,13 @@ struct Board {
   const char* name = "";  ///< The second field of *IDN?.
   const char* serial = "0";
   /// The defaults of the sweep; null for `default_sweep_settings()`.
-  SweepSettings (*bench)() noexcept = nullptr;
+  const SweepSettings* bench = nullptr;
   /// What a simulated bench was built from, for the report; null for a real one.
   const SimulatedBench* simulated = nullptr;
   /// Null where the board does not know.
   MemoryUse (*memory_use)() noexcept = nullptr;
+  /// Makes the defaults of the sweep where `bench` is null, for a board without room to keep them.
+  SweepSettings (*make_bench)() noexcept = nullptr;
 };
 
 /// The hardware of an instrument.
