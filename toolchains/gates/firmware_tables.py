@@ -3,7 +3,7 @@
 usage: firmware_tables.py (--write | --check) --readme README.MD --calls INDIRECT_CALLS.TXT TREE...
 
 A TREE is the build tree of a board; its file images.json says how the board's images are run and read. The costs come
-from the image emax_<board>_cost in an emulator that counts instructions. --write measures everything and rewrites the
+from the image emax_<board>_cost, of boards that have it, in an emulator that counts instructions. --write measures everything and rewrites the
 tables. --check measures what takes seconds, and exits with 1 if a number of the tables is off by more than its
 tolerance.
 """
@@ -206,17 +206,18 @@ def main() -> int:
     arguments = parser.parse_args()
 
     boards = [Board.read(tree) for tree in arguments.trees]
+    counted = [board for board in boards if f"emax_{board.name}_cost" in board.images]
     parts = QUICK_PARTS + (LONG_PARTS if arguments.write else [])
     with ThreadPoolExecutor(2) as pool:
-        costs = list(pool.map(lambda board: measure_costs(board, parts), boards))
+        costs = list(pool.map(lambda board: measure_costs(board, parts), counted))
     sizes = measure_sizes(boards, arguments.calls)
     if arguments.write:
-        tables.replace(arguments.readme, COSTS, cost_table(boards, costs))
-        tables.replace(arguments.readme, BUDGETS, budget_table(boards, costs))
+        tables.replace(arguments.readme, COSTS, cost_table(counted, costs))
+        tables.replace(arguments.readme, BUDGETS, budget_table(counted, costs))
         tables.replace(arguments.readme, FOOTPRINTS, size_table(sizes))
         print(f"{arguments.readme}: tables written")
         return 0
-    complaints = check_costs(arguments.readme, boards, costs) + check_sizes(arguments.readme, sizes)
+    complaints = check_costs(arguments.readme, counted, costs) + check_sizes(arguments.readme, sizes)
     for complaint in complaints:
         print(complaint)
     if complaints:

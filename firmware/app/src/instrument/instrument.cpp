@@ -105,7 +105,10 @@ void Instrument::reset_settings() noexcept {
 }
 
 SweepSettings Instrument::default_sweep() const noexcept {
-  return board_.bench != nullptr ? *board_.bench : default_sweep_settings();
+  if (board_.bench != nullptr) {
+    return *board_.bench;
+  }
+  return board_.make_bench != nullptr ? board_.make_bench() : default_sweep_settings();
 }
 
 void Instrument::restart_random() noexcept {

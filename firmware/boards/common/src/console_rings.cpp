@@ -29,9 +29,12 @@ std::uint32_t ConsoleRings::take_lost_count() noexcept {
 }
 
 void ConsoleRings::received(char byte) noexcept {
-  if (receive_.put(byte)) {
-    return;
+  if (!receive_.put(byte)) {
+    lose();
   }
+}
+
+void ConsoleRings::lose() noexcept {
   const std::uint32_t lost_count = lost_count_.load(std::memory_order_relaxed);
   const std::uint32_t untold_count = lost_count - told_count_.load(std::memory_order_acquire);
   if (untold_count != std::numeric_limits<std::uint32_t>::max()) {

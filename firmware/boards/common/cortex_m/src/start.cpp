@@ -51,8 +51,10 @@ constexpr std::size_t kFrameLr = 5;
 constexpr std::size_t kFramePc = 6;
 constexpr std::size_t kFrameStatus = 7;
 
+std::uint32_t active_exception() noexcept { return reg(kIcsr) & kExceptionMask; }
+
 const char* name_of_exception(std::uint32_t number) noexcept {
-  constexpr const char* kNames[] = {"watchdog", "HardFault", "MemManage", "BusFault", "UsageFault"};
+  constexpr const char* kNames[] = {"NMI", "HardFault", "MemManage", "BusFault", "UsageFault"};
   if (number == kMemManage && is_in_stack_guard(reg(kMmfar))) {
     return "stack overflow";
   }
@@ -67,14 +69,13 @@ bool holds_frame(const std::uint32_t* frame) noexcept {
   return at >= begin && at + kFrameWords * sizeof(std::uint32_t) <= end;
 }
 
-void report_frame(const std::uint32_t* frame) noexcept {
+void report_frame(const char* kind, const std::uint32_t* frame) noexcept {
   std::array<std::uint32_t, kFrameWords> stacked = {};
   if (holds_frame(frame)) {
     std::copy_n(frame, kFrameWords, stacked.begin());
   }
-  const std::uint32_t exception = reg(kIcsr) & kExceptionMask;
   const FaultNumber numbers[] = {
-      {"exception", exception},
+      {"exception", active_exception()},
       {"pc", stacked[kFramePc]},
       {"lr", stacked[kFrameLr]},
       {"psr", stacked[kFrameStatus]},
@@ -84,7 +85,7 @@ void report_frame(const std::uint32_t* frame) noexcept {
       {"mmfar", reg(kMmfar)},
       {"bfar", reg(kBfar)},
   };
-  report_fault(name_of_exception(exception), numbers);
+  report_fault(kind, numbers);
 }
 
 // Nobody touches what is below the stack, and nobody writes to the code: where it is RAM that would
@@ -144,12 +145,12 @@ void run_on_cortex_m() {
 }
 
 void end_in_fault(const std::uint32_t* frame) {
-  report_frame(frame);
+  report_frame(name_of_exception(active_exception()), frame);
   stop(kFaultStatus);
 }
 
 void end_in_reset(const std::uint32_t* frame) {
-  report_frame(frame);
+  report_frame("watchdog", frame);
   remember_watchdog_reset();
   reset();
 }

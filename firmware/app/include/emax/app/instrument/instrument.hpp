@@ -42,6 +42,8 @@ struct Board {
   const SimulatedBench* simulated = nullptr;
   /// Null where the board does not know.
   MemoryUse (*memory_use)() noexcept = nullptr;
+  /// Makes the defaults of the sweep where `bench` is null, for a board without room to keep them.
+  SweepSettings (*make_bench)() noexcept = nullptr;
 };
 
 /// The hardware of an instrument.

@@ -29,6 +29,8 @@ class ConsoleRings {
 
   /// For the interrupt: a byte has come in.
   void received(char byte) noexcept;
+  /// For the interrupt: a byte has come in and cannot be used.
+  void lose() noexcept;
   /// For the interrupt: the next byte that goes out. @returns False if there is none.
   bool take_next(char& byte) noexcept { return transmit_.take(byte); }
 

@@ -51,9 +51,14 @@ void on_fault();
 void on_watchdog();
 }
 
-/// Lets an interrupt through, and makes one pending by software.
+/// Lets an interrupt through, sets when it may interrupt others, and makes one pending by software.
 inline void enable_interrupt(unsigned number) noexcept {
   reg(0xE000E100 + 4 * (number / 32)) = 1U << (number % 32);
+}
+/// @param[in] priority In its highest bits, as many as the chip has; 0, as after a reset, comes
+/// first.
+inline void set_interrupt_priority(unsigned number, std::uint8_t priority) noexcept {
+  reg<std::uint8_t>(0xE000E400 + number) = priority;
 }
 inline void trigger_interrupt(unsigned number) noexcept {
   reg(0xE000E200 + 4 * (number / 32)) = 1U << (number % 32);
