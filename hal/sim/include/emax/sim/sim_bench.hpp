@@ -1,16 +1,14 @@
-// A test bench in virtual time: converters, shaker, two sensors, conditioners, and their faults.
+// A test bench as a stream of words: the bench in volts behind converters with latency.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "emax/base/elementary.hpp"
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 #include "emax/hal/analog_stream.hpp"
-#include "emax/sim/noise.hpp"
-#include "emax/sim/plant.hpp"
+#include "emax/sim/volt_bench.hpp"
 
 namespace emax::sim {
 
@@ -19,91 +17,6 @@ inline constexpr hal::StreamFormat kBenchFormat = {100000.0, 10.0, 10.0, 64, 37}
 inline constexpr std::uint32_t kMaxLatencyFrames = 127;
 inline constexpr unsigned kDacBits = 12;
 inline constexpr unsigned kAdcBits = 16;
-
-/// By how much the conditioner's gain jumps in FaultKind::kSaturation.
-inline constexpr double kSaturationFactor = 20.0;
-/// Volts per second by which the offset climbs in FaultKind::kDcDrift.
-inline constexpr double kOffsetClimbPerSecond_v = 5.0;
-
-/// What goes wrong: once, or from then on.
-enum class FaultKind : std::uint8_t {
-  kNone,
-  kLostBlock,           ///< Once: a block of response vanishes; the frame index jumps.
-  kLateBlock,           ///< Once: no block within two block times.
-  kStuckChannel,        ///< The device's ADC repeats its last word.
-  kSaturation,          ///< The device's conditioner multiplies by kSaturationFactor more.
-  kUnpluggedReference,  ///< Only the conditioner's offset, hum and noise remain.
-  kUnpluggedDevice,     ///< Likewise.
-  kSwappedChannels,     ///< Each channel's words come in as the other's.
-  kInvertedPolarity,    ///< The device's signal changes its sign.
-  kDcDrift,             ///< The device's offset climbs by kOffsetClimbPerSecond_v.
-};
-inline constexpr std::size_t kFaultKinds = 10;
-
-/// @returns The name for command lines: "none", "lost-block", "late-block", "stuck-channel",
-/// "saturation", "unplugged-reference", "unplugged-device", "swapped-channels",
-/// "inverted-polarity", "dc-drift". Never null.
-const char* name_of(FaultKind kind) noexcept;
-
-struct ParsedFault {
-  bool known = false;
-  FaultKind kind = FaultKind::kNone;
-};
-
-/// The kind of this name, which ends in a zero byte. Names are in small letters.
-ParsedFault parse_fault(const char* name) noexcept;
-
-/// One fault, from this frame of the bench's clock on. While the stream has been started once only,
-/// that is also the index of the first response frame that is wrong; a lost or late block is the
-/// one that contains it.
-struct Fault {
-  FaultKind kind = FaultKind::kNone;
-  std::uint64_t at_frame = 0;
-};
-
-/// What a bench is made of. `BenchSettings{}` is the default one. Percentages are expanded
-/// uncertainties, k = 2: each seed draws from a normal distribution whose standard deviation is
-/// half of it.
-struct BenchSettings {
-  std::uint64_t seed = 1;  ///< Of all draws and of the noise.
-  Device device;           ///< The truth that a calibration should find.
-  Shaker shaker;
-  /// Amplitudes of the harmonics in the drive for a sine of 1 V, as fractions of it. The second
-  /// grows with the amplitude, the third with its square. Static, before the reconstruction filter.
-  double second_harmonic = 1e-3;
-  double third_harmonic = 3e-4;
-
-  double reference_sensitivity = 0.1;       ///< As the certificate says, V/(m/s^2). Flat.
-  double reference_expanded_percent = 0.5;  ///< Of the certificate.
-  double drift_expanded_percent = 0.02;     ///< How far the sensitivity drifts, and
-  double drift_time_s = 10.0;               ///< how long it takes; then it stays.
-  double reference_gain = 10.0;             ///< Conditioners, nominal.
-  double device_gain = 1.0;
-  double gain_expanded_percent = 0.1;      ///< Of the ratio of both gains.
-  double mounting_expanded_percent = 0.2;  ///< Mounting, transverse motion, temperature.
-
-  double noise_v = 5e-3;   ///< Standard deviation of each channel's white noise, at the ADC.
-  double offset_v = 3e-3;  ///< Standard deviation of the offset that is drawn for each channel.
-  double hum_v = 2e-4;     ///< Amplitude at the ADC; a third as much at three times the frequency.
-  double hum_hz = 49.97;
-  double skew_s = 1.25e-6;        ///< The device is sampled later than the reference; see `Plant`.
-  bool ideal_converters = false;  ///< DAC and ADC use all 32 bits of a word; they still clip.
-  Fault fault;
-};
-
-/// What was drawn, which a calibration cannot know. Constant until the next `configure()`.
-struct BenchTruth {
-  Device device;
-  double reference_sensitivity = 0.0;  ///< True, at time 0, V/(m/s^2).
-  double reference_drift = 0.0;        ///< Relative, reached at drift_time_s.
-  double gain_factor = 1.0;      ///< True ratio of the gains, device over reference, over nominal.
-  double mounting_factor = 1.0;  ///< Of the device's channel.
-  double reference_offset_v = 0.0;
-  double device_offset_v = 0.0;
-  /// The device's sensitivity that follows from certificate and nominal gains if nothing else is
-  /// wrong: S times what was drawn.
-  double apparent_sensitivity = 0.0;
-};
 
 /// What has gone out through the DAC since `configure()`.
 struct DacRecord {
@@ -116,13 +29,9 @@ struct DacRecord {
 
 /// An honest bench, the same to the last bit on every target.
 ///
-/// Drive words -> 12-bit DAC (which drops the other bits) with zero-order hold -> distortion ->
-/// `Plant` -> reference and device -> conditioners with offset, hum and noise -> 16-bit ADCs. Both
-/// ADCs sample in the middle of a hold, the device's later by the skew: the delay of the hold
-/// cancels, and the acceleration over the drive is the shaker's response times sin(x)/x,
-/// x = pi f/rate, delayed by the latency alone. Device over reference is K(jw) e^(+jw skew). The
-/// images of the held drive, which both ADCs fold back, change that by 1e-9 f/Hz of it at most (up
-/// to 6 kHz, default shaker).
+/// Drive words -> latency -> 12-bit DAC (which drops the other bits) -> `VoltBench` -> 16-bit ADCs.
+/// While the stream has been started once only, the frame of a fault is also the index of the
+/// first response frame that is wrong; a lost or late block is the one that contains it.
 ///
 /// Time is virtual: the clock counts frames and moves only when the stream does. While nothing is
 /// exchanged, the bench stands still.
@@ -142,19 +51,17 @@ class SimBench final : public hal::AnalogStream {
   ///
   /// @returns
   /// * kOk: Ready for `start()`.
-  /// * kInvalidArgument: A setting that `Plant` refuses, an uncertainty outside 0 to 100 %, a
-  ///   harmonic outside 0 to 0.1, a negative noise, offset or hum, a gain, reference sensitivity or
-  ///   drift time that is not above 0, a hum beyond half the sampling rate, an unknown fault, not a
-  ///   number, or a format outside its ranges. Nothing has changed.
+  /// * kInvalidArgument: What `VoltBench` refuses, or a format outside its ranges. Nothing has
+  ///   changed.
   /// * kAlreadyRunning: Nothing has changed.
   Status configure(const BenchSettings& settings) noexcept;
 
-  const BenchSettings& settings() const noexcept { return settings_; }
-  const BenchTruth& truth() const noexcept { return truth_; }
+  const BenchSettings& settings() const noexcept { return bench_.settings(); }
+  const BenchTruth& truth() const noexcept { return bench_.truth(); }
   const DacRecord& dac() const noexcept { return dac_; }
 
   /// Frames since `configure()`.
-  std::uint64_t clock_frames() const noexcept { return clock_; }
+  std::uint64_t clock_frames() const noexcept { return bench_.clock_frames(); }
   double now_s() const noexcept;
 
  private:
@@ -165,13 +72,6 @@ class SimBench final : public hal::AnalogStream {
   void do_stop() noexcept override;
   bool do_drive_is_at_zero() const noexcept override { return dac_.last == 0; }
 
-  /// From a sensor to its ADC.
-  struct Channel {
-    double scale = 0.0;  ///< Volts at the ADC per unit of what the sensor hands over.
-    double offset_v = 0.0;
-    double hum_phase_rad = 0.0;
-    SinCos hum = {0.0, 1.0};
-  };
   /// From volts to words.
   struct Converter {
     double codes_per_v = 0.0;
@@ -179,36 +79,21 @@ class SimBench final : public hal::AnalogStream {
     std::int64_t words_per_code = 1;
   };
 
-  void draw() noexcept;
   hal::Frame advance(hal::Word word) noexcept;
   void record(hal::Word word) noexcept;
-  void refresh() noexcept;
-  void break_down() noexcept;
   bool event_due(FaultKind kind) noexcept;
   double drive_v(hal::Word word) const noexcept;
-  double conditioned(Channel& channel, double sensor, double noise) const noexcept;
   hal::Word digitised(double volts) const noexcept;
 
-  BenchSettings settings_ = {};
-  BenchTruth truth_ = {};
+  VoltBench bench_ = {};
   DacRecord dac_ = {};
-  Plant plant_ = {};
-  Noise noise_ = {};
-  Channel reference_ = {};
-  Channel device_ = {};
   Converter adc_ = {};
-  double drift_factor_ = 1.0;
-  double offset_climb_v_ = 0.0;   ///< Per frame.
-  SinCos hum_turn_ = {0.0, 1.0};  ///< Per frame.
-  std::uint64_t hum_step_ = 0;    ///< The same in turns, in units of 2^-64.
-  std::uint64_t clock_ = 0;
   std::uint64_t started_at_ = 0;
   std::array<hal::Word, kMaxLatencyFrames + 1> pipeline_ = {};  ///< Drive on its way.
   hal::Word last_device_ = 0;
   bool configured_ = false;
   bool event_over_ = false;  ///< The lost or late block has been.
   bool stuck_ = false;
-  bool swapped_ = false;
 };
 
 static_assert(sizeof(SimBench) <= 2432);
