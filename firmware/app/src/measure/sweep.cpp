@@ -23,8 +23,10 @@ std::uint32_t frames_of(double frames) noexcept {
 }  // namespace
 
 // Whatever the memory held before. What is not here is written before it is read.
-void SweepWorkspace::begin(const hal::StreamFormat& format) noexcept {
+void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& scales) noexcept {
   format_ = format;
+  format_.drive_full_scale_v = scales.drive_v;
+  scales_ = scales;
   reference_monitor_ = ChannelMonitor();
   device_monitor_ = ChannelMonitor();
   target_ = SweepWorkspace::Target();
@@ -49,10 +51,10 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   }
   results_.settings = settings;
   reset();
-  work_.begin(stream_.format());
+  work_.begin(stream_.format(), full_scales(settings, stream_.format()));
   results_.inputs.sample_rate_hz = work_.format_.sample_rate_hz;
   work_.drive_.configure(work_.format_, settings.drive_limit_v, settings.slew_v_per_s);
-  work_.silence_.start(work_.format_);
+  work_.silence_.start(work_.format_, work_.scales_);
   work_.left_ = work_.silence_.frames();
   results_.stage = SweepStage::kSilence;
   return Status::kOk;
@@ -157,7 +159,7 @@ void Sweep::watch() noexcept {
 
 /// The largest distance of the block from the offset, which is taken to a word.
 double Sweep::reference_peak_v() const noexcept {
-  const double volts = hal::volts_per_word(work_.format_.input_full_scale_v);
+  const double volts = hal::volts_per_word(work_.scales_.reference_v);
   const auto offset = static_cast<std::int64_t>(results_.inputs.silent_reference.offset_v / volts);
   std::int64_t peak = 0;
   for (std::size_t i = 0; i < work_.format_.block_frames; ++i) {
@@ -200,7 +202,7 @@ void Sweep::end_activity() noexcept {
       work_.activity_ = SweepWorkspace::Activity::kMeasuring;
       // The rates were checked by `start()`.
       (void)work_.fit_.start(work_.target_.frequency_hz, work_.format_.sample_rate_hz,
-                             hal::volts_per_word(work_.format_.input_full_scale_v));
+                             hal::volts_per_word(work_.scales_.reference_v));
       begin_repeat();
       return;
     case SweepWorkspace::Activity::kMeasuring:
@@ -217,9 +219,8 @@ void Sweep::end_activity() noexcept {
 void Sweep::end_silence() noexcept {
   results_.inputs.silent_reference = work_.silence_.reference();
   results_.inputs.silent_device = work_.silence_.device();
-  const double most_v = kWanderShare * work_.format_.input_full_scale_v;
-  if (abs(results_.inputs.silent_reference.drift_v) > most_v ||
-      abs(results_.inputs.silent_device.drift_v) > most_v) {
+  if (abs(results_.inputs.silent_reference.drift_v) > kWanderShare * work_.scales_.reference_v ||
+      abs(results_.inputs.silent_device.drift_v) > kWanderShare * work_.scales_.device_v) {
     fail(Status::kDcDrift);
     return;
   }
@@ -297,9 +298,8 @@ void Sweep::finish() noexcept {
   SweepResults& results = results_;
   SweepWorkspace& work = work_;
   BudgetInputs& inputs = results.inputs;
-  const double volts = work.format_.input_full_scale_v;
-  inputs.reference_step_v = volts * work.reference_monitor_.step();
-  inputs.device_step_v = volts * work.device_monitor_.step();
+  inputs.reference_step_v = work.scales_.reference_v * work.reference_monitor_.step();
+  inputs.device_step_v = work.scales_.device_v * work.device_monitor_.step();
   const double before = norm(results.check_before);
   const double after = norm(results.check_after);
   const bool has_checks = before > 0.0 && after > 0.0;

@@ -67,7 +67,7 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
 
 void Sweep::end_repeat() noexcept {
   const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
-  const Reading device = reading_of(work_.fit_.device(), results_.inputs.silent_device);
+  const Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
   if (work_.repeats_.count == 0) {
     judge_first(reference, device);
     if (done() || work_.block_is_spent_) {
@@ -148,7 +148,7 @@ void Sweep::raise_drive() noexcept {
 double Sweep::offset_change_v(double reference_v, double device_v) const noexcept {
   const double ratio = norm(results_.check_before) > 0.0
                            ? magnitude(results_.check_before) / ratio_factor()
-                           : work_.fit_.device().amplitude_v / work_.fit_.reference().amplitude_v;
+                           : work_.device_fit().amplitude_v / work_.fit_.reference().amplitude_v;
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 
@@ -159,7 +159,7 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   if (device.is_weak()) {
     return Status::kNoDevice;
   }
-  const double full_scale_v = work_.format_.input_full_scale_v;
+  const double full_scale_v = work_.scales_.device_v;
   const double within_v = offset_change_v(reference.fit.offset_v - work_.first_reference_offset_v_,
                                           device.fit.offset_v - work_.first_device_offset_v_);
   const double since_silence_v =
@@ -195,7 +195,8 @@ void Sweep::suspect(Status status) noexcept {
 // K over the ratio of the volts.
 double Sweep::ratio_factor() const noexcept {
   return sensitivity_at(results_.settings.reference, work_.target_.frequency_hz) *
-         results_.settings.reference_gain / results_.settings.device_gain;
+         results_.settings.reference_gain /
+         (results_.settings.device_gain * results_.settings.ratio_correction);
 }
 
 Complex Sweep::ratio_of(const PointScatter& scatter) const noexcept {

@@ -38,9 +38,13 @@ class SweepWorkspace {
     bool is_close = false;  // The level of this frequency has been seen.
   };
 
-  void begin(const hal::StreamFormat& format) noexcept;
+  void begin(const hal::StreamFormat& format, const FullScales& scales) noexcept;
+  SineFitResult device_fit() const noexcept {
+    return in_volts(fit_.device(), scales_.device_v / scales_.reference_v);
+  }
 
-  hal::StreamFormat format_;
+  hal::StreamFormat format_;  // The drive's full scale is that outside the front end.
+  FullScales scales_;
   DriveOscillator drive_;
   ChannelMonitor reference_monitor_;
   ChannelMonitor device_monitor_;
