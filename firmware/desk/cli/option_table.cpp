@@ -25,7 +25,9 @@ constexpr double kMaxNoise_v = 1.0;
 
 constexpr const char* kExpectedFault =
     "none, lost-block, late-block, stuck-channel, saturation, unplugged-reference, "
-    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS";
+    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS; one "
+    "or "
+    "two of them";
 
 constexpr bool is_within(double value, double low, double high) noexcept {
   return value >= low && value <= high;
@@ -134,7 +136,7 @@ bool take_bench_noise(std::string_view text, ReportOptions& options) noexcept {
          is_within(options.bench.noise_v, 0.0, kMaxNoise_v);
 }
 
-bool take_bench_fault(std::string_view text, ReportOptions& options) {
+bool take_fault(std::string_view text, sim::Fault& fault) {
   const std::size_t at = text.find('@');
   double time_s = kDefaultFaultTime_s;
   if (at != std::string_view::npos &&
@@ -143,8 +145,16 @@ bool take_bench_fault(std::string_view text, ReportOptions& options) {
   }
   const sim::ParsedFault parsed = sim::parse_fault(std::string(text.substr(0, at)).c_str());
   const double frame = emax::floor(time_s * sim::kBenchFormat.sample_rate_hz + 0.5);
-  options.bench.fault = {parsed.kind, static_cast<std::uint64_t>(frame)};
+  fault = {parsed.kind, static_cast<std::uint64_t>(frame)};
   return parsed.known;
+}
+
+bool take_bench_fault(std::string_view text, ReportOptions& options) {
+  const std::size_t comma = text.find(',');
+  options.bench.second_fault = {};
+  return take_fault(text.substr(0, comma), options.bench.fault) &&
+         (comma == std::string_view::npos ||
+          take_fault(text.substr(comma + 1), options.bench.second_fault));
 }
 
 bool take_damping(std::string_view text, ReportOptions& options) noexcept {
@@ -266,7 +276,7 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
            take_bench_truth)
       .add("bench-noise", "VOLTS", "0.005", "a number of V from 0 to 1",
            "noise of each channel, rms, in V", take_bench_noise)
-      .add("bench-fault", "NAME[@SECONDS]", "none", kExpectedFault,
+      .add("bench-fault", "NAME[@SECONDS][,NAME[@SECONDS]]", "none", kExpectedFault,
            "what goes wrong, and when (default 3 s after the\n"
            "start; the sweep takes 6): lost-block, late-block,\n"
            "stuck-channel, saturation, unplugged-reference,\n"

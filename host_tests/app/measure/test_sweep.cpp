@@ -417,7 +417,12 @@ TEST(Sweep, LevelAtTheAccelerationLimit) {
 TEST(Sweep, UnreachableLevel) {
   SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 19.0;  // 5 V reach 10 m/s^2.
-  SweepRun run((BenchSettings()));
+  settings.reference_gain = 1.0;
+  settings.device_gain = 0.1;  // Within the converters' range.
+  BenchSettings bench;
+  bench.reference_gain = 1.0;
+  bench.device_gain = 0.1;
+  SweepRun run(bench);
   run.to_end(settings);
   EXPECT_EQ(run.sweep.status, Status::kLevelNotReached);
   EXPECT_EQ(run.sweep.failed_frequency_hz, 160.0);

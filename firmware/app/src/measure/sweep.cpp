@@ -2,6 +2,7 @@
 #include "emax/app/measure/sweep.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
@@ -12,7 +13,10 @@ namespace {
 constexpr double kSettlePeriods = 3.0;
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
+constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
+constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
+constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once.
 constexpr double kCautiousShare = 0.25;  // Of the limit, before this frequency was seen.
 constexpr std::uint64_t kMinEqualWords = 256;
 
@@ -33,6 +37,8 @@ void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& sc
   last_ratio_ = Complex();
   drive_per_acceleration_ = 0.0;
   level_scale_ = 1.0;
+  level_room_mps2_ = std::numeric_limits<double>::infinity();
+  device_v_per_v_ = 0.0;
   activity_ = SweepWorkspace::Activity::kSilence;
   is_lowering_ = false;
 }
@@ -171,6 +177,17 @@ double Sweep::reference_peak_v() const noexcept {
 
 void Sweep::lower_level() noexcept {
   work_.target_.was_overrange = true;
+  if (!(work_.drive_per_acceleration_ > 0.0)) {
+    // The first look: nothing is known yet, so it is the drive that was too much, not the level.
+    ++work_.target_.tries;
+    if (work_.target_.tries > kMostLooks) {
+      fail(Status::kSaturated);
+      return;
+    }
+    work_.is_lowering_ = true;
+    drive_to(kLookShare * work_.drive_.amplitude_v());
+    return;
+  }
   work_.level_scale_ *= 0.5;
   if (work_.level_scale_ < kLeastScale) {
     fail(Status::kSaturated);
@@ -229,7 +246,9 @@ void Sweep::end_silence() noexcept {
 }
 
 double Sweep::aim_mps2() const noexcept {
-  const double wanted = work_.level_scale_ * results_.settings.level_mps2;
+  const double room = work_.level_room_mps2_;
+  const double level = results_.settings.level_mps2;
+  const double wanted = work_.level_scale_ * (level < kRoomShare * room ? level : 0.5 * room);
   const double most = (work_.target_.is_close ? kLimitShare : kCautiousShare) *
                       results_.settings.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
@@ -256,6 +275,9 @@ void Sweep::begin_target(double frequency_hz) noexcept {
                            ? aim_mps2() * work.drive_per_acceleration_
                            : kFirstDriveShare * settings.drive_limit_v;
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
+  target.is_close = true;
+  target.permitted_v = SweepWorkspace::kPermittedStep * aim_mps2() * work.drive_per_acceleration_;
+  target.is_close = false;
   drive_to(amplitude_v);
 }
 
