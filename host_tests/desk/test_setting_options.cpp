@@ -34,9 +34,12 @@ TEST(SettingOptions, DefaultsInTheHelpAreThoseOfTheSettings) {
   ReportOptions options;
   options.settings = {};
   options.sweep = {};
+  // Said in words.
+  options.sweep.frequency_hz = default_sweep_settings().frequency_hz;
+  options.sweep.frequency_count = default_sweep_settings().frequency_count;
   std::size_t defaults = 0;
   for (const Option& option : report_options(options)) {
-    if (!option.by_default.empty()) {
+    if (!option.by_default.empty() && option.name != "frequencies") {
       EXPECT_TRUE(option.take(option.by_default)) << option.name;
       ++defaults;
     }
@@ -95,6 +98,37 @@ TEST(SettingOptions, ErrorsOfSettingsLeadToTheirOptions) {
   EXPECT_EQ(emax::desk::option_of_setting("acceleration limit"), "acceleration-limit");
   EXPECT_EQ(emax::desk::option_of_setting("limit"), "limit");
   EXPECT_EQ(emax::desk::option_of_setting("repeats"), "repeats");
+}
+
+TEST(SettingOptions, AValueAndItsUncertainty) {
+  SweepSettings sweep = default_sweep_settings();
+  const std::vector<Option> options = emax::desk::sweep_setting_options(sweep);
+  EXPECT_TRUE(take(options, "correction-ratio", "1.03,0.02"));
+  EXPECT_EQ(sweep.ratio_correction, 1.03);
+  EXPECT_EQ(sweep.ratio_expanded_percent, 0.02);
+  EXPECT_TRUE(take(options, "correction-ratio", "1.04"));
+  EXPECT_EQ(sweep.ratio_correction, 1.04);
+  EXPECT_EQ(sweep.ratio_expanded_percent, 0.02);
+  EXPECT_FALSE(take(options, "correction-ratio", "1.04,0.1,0.2"));
+  EXPECT_FALSE(take(options, "correction-ratio", ""));
+  EXPECT_EQ(sweep.ratio_correction, 1.04);
+}
+
+TEST(SettingOptions, ListsOfTheBench) {
+  ReportOptions options;
+  const std::vector<Option> all = report_options(options);
+  EXPECT_TRUE(take(all, "frequencies", "100,200,400.5"));
+  EXPECT_EQ(options.sweep.frequency_count, 3U);
+  EXPECT_EQ(options.sweep.frequency_hz[2], 400.5);
+  EXPECT_TRUE(take(all, "reference-table", "10,0.1,1000,0.2"));
+  EXPECT_EQ(options.sweep.reference.count, 2U);
+  EXPECT_EQ(options.sweep.reference.frequency_hz[1], 1000.0);
+  EXPECT_EQ(options.sweep.reference.sensitivity[1], 0.2);
+  EXPECT_FALSE(take(all, "reference-table", "10,0.1,1000"));
+  EXPECT_FALSE(take(all, "reference-table", "10,0.1"));
+  EXPECT_TRUE(take(all, "reference-sensitivity", "0.25"));
+  EXPECT_EQ(options.sweep.reference.count, 1U);
+  EXPECT_EQ(options.sweep.reference.sensitivity[0], 0.25);
 }
 
 TEST(ShortestText, IsWhatOneWouldWrite) {

@@ -25,7 +25,9 @@ constexpr double kMaxNoise_v = 1.0;
 
 constexpr const char* kExpectedFault =
     "none, lost-block, late-block, stuck-channel, saturation, unplugged-reference, "
-    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS";
+    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS; one "
+    "or "
+    "two of them";
 
 constexpr bool is_within(double value, double low, double high) noexcept {
   return value >= low && value <= high;
@@ -75,6 +77,42 @@ bool take_trend(std::string_view text, ReportOptions& options) noexcept {
   return true;
 }
 
+bool take_frequencies(std::string_view text, ReportOptions& options) noexcept {
+  const Numbers list = take_list(text);
+  if (!list.valid || list.count > kMaxPoints) {
+    return false;
+  }
+  options.sweep.frequency_count = list.count;
+  std::copy_n(list.values, list.count, options.sweep.frequency_hz.begin());
+  return true;
+}
+
+bool take_reference_sensitivity(std::string_view text, ReportOptions& options) noexcept {
+  double value = 0.0;
+  if (!take_number(text, value) || !is_within(value, 1e-9, 1e9)) {
+    return false;
+  }
+  options.sweep.reference.count = 1;
+  options.sweep.reference.frequency_hz[0] = 0.0;
+  options.sweep.reference.sensitivity[0] = value;
+  return true;
+}
+
+bool take_reference_table(std::string_view text, ReportOptions& options) noexcept {
+  const Numbers list = take_list(text);
+  if (!list.valid || list.count % 2 != 0 || list.count < 4 ||
+      list.count > 2 * app::kMaxReferencePoints) {
+    return false;
+  }
+  app::ReferenceCalibration& reference = options.sweep.reference;
+  reference.count = list.count / 2;
+  for (std::size_t i = 0; i < reference.count; ++i) {
+    reference.frequency_hz[i] = list.values[2 * i];
+    reference.sensitivity[i] = list.values[2 * i + 1];
+  }
+  return true;
+}
+
 bool take_bench_seed(std::string_view text, ReportOptions& options) noexcept {
   std::uint32_t seed = 0;
   const bool valid = take_integer(text, seed);
@@ -85,12 +123,11 @@ bool take_bench_seed(std::string_view text, ReportOptions& options) noexcept {
 bool take_bench_truth(std::string_view text, ReportOptions& options) noexcept {
   const Numbers list = take_list(text);
   const double* values = list.values;
-  if (!list.valid || list.count != 3 || !is_within(values[0], 1e-3, 1e3) ||
+  if (!list.valid || list.count != 3 || !is_within(values[0], 1e-5, 1e3) ||
       !is_within(values[1], 1.0, 1e6) || !is_within(values[2], 1e-3, 1.0) || values[2] == 1.0) {
     return false;
   }
   options.bench.device = {values[0], values[1], values[2]};
-  options.sweep.expected_sensitivity = values[0];
   return true;
 }
 
@@ -99,7 +136,7 @@ bool take_bench_noise(std::string_view text, ReportOptions& options) noexcept {
          is_within(options.bench.noise_v, 0.0, kMaxNoise_v);
 }
 
-bool take_bench_fault(std::string_view text, ReportOptions& options) {
+bool take_fault(std::string_view text, sim::Fault& fault) {
   const std::size_t at = text.find('@');
   double time_s = kDefaultFaultTime_s;
   if (at != std::string_view::npos &&
@@ -108,8 +145,16 @@ bool take_bench_fault(std::string_view text, ReportOptions& options) {
   }
   const sim::ParsedFault parsed = sim::parse_fault(std::string(text.substr(0, at)).c_str());
   const double frame = emax::floor(time_s * sim::kBenchFormat.sample_rate_hz + 0.5);
-  options.bench.fault = {parsed.kind, static_cast<std::uint64_t>(frame)};
+  fault = {parsed.kind, static_cast<std::uint64_t>(frame)};
   return parsed.known;
+}
+
+bool take_bench_fault(std::string_view text, ReportOptions& options) {
+  const std::size_t comma = text.find(',');
+  options.bench.second_fault = {};
+  return take_fault(text.substr(0, comma), options.bench.fault) &&
+         (comma == std::string_view::npos ||
+          take_fault(text.substr(comma + 1), options.bench.second_fault));
 }
 
 bool take_damping(std::string_view text, ReportOptions& options) noexcept {
@@ -224,14 +269,14 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
       .add("bench-seed", "N", "1", "a whole number from 0 to 4294967295",
            "of its noise and of what its certificates leave open", take_bench_seed)
       .add("bench-truth", "S,f0,beta", "1.037,4073,0.3182",
-           "three numbers: S from 0.001 to 1000 V/(m/s^2), f0 from 1 to 1e6 Hz, beta from 0.001 to "
+           "three numbers: S from 1e-5 to 1000 V/(m/s^2), f0 from 1 to 1e6 Hz, beta from 0.001 to "
            "below 1",
            "the device that is mounted; S is also what its data\n"
-           "sheet says, within a factor of 3",
+           "sheet says, unless --device-sensitivity does",
            take_bench_truth)
       .add("bench-noise", "VOLTS", "0.005", "a number of V from 0 to 1",
            "noise of each channel, rms, in V", take_bench_noise)
-      .add("bench-fault", "NAME[@SECONDS]", "none", kExpectedFault,
+      .add("bench-fault", "NAME[@SECONDS][,NAME[@SECONDS]]", "none", kExpectedFault,
            "what goes wrong, and when (default 3 s after the\n"
            "start; the sweep takes 6): lost-block, late-block,\n"
            "stuck-channel, saturation, unplugged-reference,\n"
@@ -239,6 +284,27 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
            "inverted-polarity, dc-drift",
            take_bench_fault);
   return builder.options();
+}
+
+// Those of the rows, with the list of frequencies, and what the rows of the reference say.
+std::vector<Option> bench_setting_options(ReportOptions& options) {
+  std::vector<Option> all = sweep_setting_options(options.sweep);
+  for (Option& option : all) {
+    if (option.name == "frequencies") {
+      option.take = [&options](std::string_view text) { return take_frequencies(text, options); };
+    }
+  }
+  Builder builder(options, kBenchHeading, true);
+  builder
+      .add("reference-sensitivity", "V/(M/S2)", "0.1", "a number above 0",
+           "of the reference sensor, in V/(m/s^2)", take_reference_sensitivity)
+      .add("reference-table", "F1,S1,...", "", "2 to 32 pairs of Hz and V/(m/s^2)",
+           "of the reference over frequency, with straight lines\n"
+           "between them",
+           take_reference_table);
+  const std::vector<Option>& more = builder.options();
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 // Those of the rows, with the two that are lists.
@@ -307,7 +373,7 @@ std::vector<Option> report_options(ReportOptions& options) {
   std::vector<Option> all = device_options(options);
   append(all, table_options(options));
   append(all, own_bench_options(options));
-  append(all, sweep_setting_options(options.sweep));
+  append(all, bench_setting_options(options));
   append(all, evaluation_options(options));
   append(all, label_options(options));
   append(all, output_options(options));
@@ -317,7 +383,7 @@ std::vector<Option> report_options(ReportOptions& options) {
 std::vector<Option> bench_options(ReportOptions& options) {
   std::vector<Option> all = {report_option(options, "reference-uncertainty")};
   append(all, own_bench_options(options));
-  append(all, sweep_setting_options(options.sweep));
+  append(all, bench_setting_options(options));
   all[0].heading = kBenchHeading;
   return all;
 }

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "emax/base/elementary.hpp"
+
 #include "desk/cli/option_parser.hpp"
 #include "desk/cli/option_table.hpp"
 #include "desk/cli/setting_options.hpp"
@@ -41,7 +43,8 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
   return has_model ? check_model(options.device) : Problem{};
 }
 
-// What is one number on the bench and in the settings of the sweep.
+// The simulated bench is built as it is described: what the settings of the sweep say of the chain
+// is nominal, and what is drawn of it lies within the uncertainties stated.
 void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& options) {
   if (!is_given(all, "reference-uncertainty") && options.measures()) {
     options.reference_uncertainty_percent =
@@ -51,12 +54,16 @@ void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& option
   app::SweepSettings& sweep = options.sweep;
   bench.reference_expanded_percent = options.reference_uncertainty_percent;
   sweep.reference.expanded_percent = options.reference_uncertainty_percent;
-  sweep.reference.sensitivity[0] = bench.reference_sensitivity;
-  sweep.reference_gain = bench.reference_gain;
-  sweep.device_gain = bench.device_gain;
-  sweep.gain_expanded_percent = bench.gain_expanded_percent;
-  sweep.mounting_expanded_percent = bench.mounting_expanded_percent;
-  sweep.skew_s = bench.skew_s;
+  bench.reference_sensitivity = app::sensitivity_at(sweep.reference, sweep.check_hz);
+  bench.reference_gain = sweep.reference_gain;
+  bench.device_gain = sweep.device_gain;
+  bench.gain_expanded_percent =
+      emax::sqrt(sweep.reference_gain_expanded_percent * sweep.reference_gain_expanded_percent +
+                 sweep.device_gain_expanded_percent * sweep.device_gain_expanded_percent);
+  bench.mounting_expanded_percent = sweep.mounting_expanded_percent;
+  if (is_given(all, "bench-truth") && !is_given(all, "device-sensitivity")) {
+    sweep.expected_sensitivity = bench.device.sensitivity;
+  }
 }
 
 app::SettingsError check_settings(const ReportOptions& options) {

@@ -68,8 +68,25 @@ bool take_word(const SettingRow& row, std::string_view text, std::uint8_t& byte)
   return true;
 }
 
+// A number, and perhaps behind a comma that of the next field.
+bool take_pair(const SettingField& field, const SettingField& next, std::string_view text,
+               void* settings) {
+  const Numbers list = take_list(text);
+  if (!list.valid || list.count < 1 || list.count > 2) {
+    return false;
+  }
+  member_at<double>(settings, field.offset) = list.values[0];
+  if (list.count == 2) {
+    member_at<double>(settings, next.offset) = list.values[1];
+  }
+  return true;
+}
+
 bool take_setting(const SettingRow& row, std::string_view text, void* settings) {
   const SettingField& field = row.field;
+  if (row.command.next_unit != nullptr) {
+    return take_pair(field, (&row)[1].field, text, settings);
+  }
   switch (field.kind) {
     case SettingKind::kNumber:
       return take_number(text, member_at<double>(settings, field.offset));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emax/app/settings/settings.hpp"
+#include "emax/base/capacity.hpp"
 #include "emax/base/elementary.hpp"
 
 namespace emax::desk {
@@ -15,7 +16,8 @@ namespace emax::desk {
 /// Numbers with commas between them.
 struct Numbers {
   /// A list longer than any that is expected.
-  static constexpr std::size_t kMost = app::kMaxTrendPoints + 1;
+  static constexpr std::size_t kMost =
+      (kMaxPoints > app::kMaxTrendPoints ? kMaxPoints : app::kMaxTrendPoints) + 1;
 
   double values[kMost] = {};
   std::size_t count = 0;

@@ -48,7 +48,7 @@ Status SimBench::configure(const BenchSettings& settings) noexcept {
   pipeline_ = {};
   started_at_ = 0;
   last_device_ = 0;
-  event_over_ = false;
+  event_over_ = {};
   stuck_ = false;
   configured_ = true;
   adc_.half_scale = hal::kWordsPerFullScale;
@@ -110,14 +110,17 @@ void SimBench::do_stop() noexcept {
   }
 }
 
-/// True once, for the first block that reaches the frame of this kind of fault.
+/// True once for each fault of this kind, for the first block that reaches its frame.
 bool SimBench::event_due(FaultKind kind) noexcept {
-  if (settings().fault.kind != kind || event_over_ ||
-      settings().fault.at_frame >= clock_frames() + format().block_frames) {
-    return false;
+  const std::array<Fault, 2> faults = {settings().fault, settings().second_fault};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (faults[i].kind == kind && !event_over_[i] &&
+        faults[i].at_frame < clock_frames() + format().block_frames) {
+      event_over_[i] = true;
+      return true;
+    }
   }
-  event_over_ = true;
-  return true;
+  return false;
 }
 
 Frame SimBench::advance(Word word) noexcept {
@@ -128,8 +131,9 @@ Frame SimBench::advance(Word word) noexcept {
   };
   pipeline_[slot(clock)] = word;
   const Word at_dac = pipeline_[slot(clock - format().latency_frames)];
-  const Fault& fault = settings().fault;
-  stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
+  for (const Fault& fault : {settings().fault, settings().second_fault}) {
+    stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
+  }
   const BenchVolts volts = bench_.step(drive_v(at_dac));
   Frame frame{digitised(volts.reference_v), digitised(volts.device_v)};
   if (stuck_) {

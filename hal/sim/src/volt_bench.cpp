@@ -77,7 +77,8 @@ ParsedFault parse_fault(const char* name) noexcept {
 Status VoltBench::configure(const BenchSettings& settings, double sample_rate_hz) noexcept {
   if (!positive(sample_rate_hz) || !uncertainties_ok(settings) ||
       !electronics_ok(settings, sample_rate_hz) ||
-      static_cast<std::size_t>(settings.fault.kind) >= kFaultKinds) {
+      static_cast<std::size_t>(settings.fault.kind) >= kFaultKinds ||
+      static_cast<std::size_t>(settings.second_fault.kind) >= kFaultKinds) {
     return Status::kInvalidArgument;
   }
   const Status status =
@@ -90,6 +91,7 @@ Status VoltBench::configure(const BenchSettings& settings, double sample_rate_hz
   reference_ = {};
   device_ = {};
   drift_factor_ = 1.0;
+  peak_mps2_ = 0.0;
   offset_climb_v_ = 0.0;
   clock_ = 0;
   swapped_ = false;
@@ -139,11 +141,15 @@ BenchVolts VoltBench::step(double drive_v) noexcept {
   if (clock_ % kRefreshFrames == 0) {
     refresh();
   }
-  if (clock_ == settings_.fault.at_frame) {
-    break_down();
+  for (const Fault& fault : {settings_.fault, settings_.second_fault}) {
+    if (clock_ == fault.at_frame) {
+      break_down(fault.kind);
+    }
   }
   device_.offset_v += offset_climb_v_;
   const PlantOutput sensed = plant_.step(distorted_v(drive_v));
+  const double size = abs(sensed.acceleration_mps2);
+  peak_mps2_ = size > peak_mps2_ ? size : peak_mps2_;
   const NoisePair noise = noise_.pair();
   const BenchVolts volts = {
       conditioned_v(reference_, sensed.acceleration_mps2 * drift_factor_, noise.first),
@@ -162,8 +168,8 @@ void VoltBench::refresh() noexcept {
   plant_.flush();
 }
 
-void VoltBench::break_down() noexcept {
-  switch (settings_.fault.kind) {
+void VoltBench::break_down(FaultKind kind) noexcept {
+  switch (kind) {
     case FaultKind::kNone:
     case FaultKind::kLostBlock:
     case FaultKind::kLateBlock:

@@ -73,6 +73,18 @@ constexpr SettingCase kSettings[] = {
     {"SOUR:LEV", "2", "2", "1", "0"},
     {"SOUR:LIM", "30 M/S2", "30", "20", "0"},
     {"SOUR:SLEW", "200000", "200000", "100000", "1"},
+    {"SOUR:LIM:VOLT", "4", "4", "5", "11"},
+    {"SOUR:FULL", "8", "8", "0", "4"},
+    {"SWE:REP", "4", "4", "3", "17"},
+    {"SWE:CHEC", "80 HZ", "80", "160", "50KHZ"},
+    {"REF:GAIN", "20,0.25", "20,0.25", "10,0", "0"},
+    {"DEV:SENS", "0.25", "0.25", "1.02", "-1"},
+    {"REF:FULL", "12", "12", "0", "-1"},
+    {"DEV:FULL", "12", "12", "0", "-1"},
+    {"CLOC:UNC", "25", "25", "0", "-1"},
+    {"CROS:UNC", "0.5", "0.5", "0", "51"},
+    {"LIN:UNC", "0.5", "0.5", "0", "51"},
+    {"CORR:RAT", "1.25,0.5", "1.25,0.5", "1,0", "11"},
 };
 
 TEST(Instrument, SetsAnswersAndRefusesEachSetting) {
@@ -92,6 +104,9 @@ TEST(Instrument, SetsAnswersAndRefusesEachSetting) {
   }
 }
 
+// The value itself, of those that are answered with their uncertainty.
+std::string first_of(const std::string& answer) { return answer.substr(0, answer.find(',')); }
+
 TEST(Instrument, KnowsTheLimitsOfEverySettingThatIsANumber) {
   InstrumentBench i;
   for (const auto& row : app::Instrument::commands()) {
@@ -108,12 +123,12 @@ TEST(Instrument, KnowsTheLimitsOfEverySettingThatIsANumber) {
     const std::string by_default = i.ask(command + "? DEF");
     ASSERT_EQ(least.size() + most.size(), 2U);
     EXPECT_LT(least[0], most[0]);
-    EXPECT_EQ(i.ask(command + "?"), by_default);
+    EXPECT_EQ(first_of(i.ask(command + "?")), by_default);
     if (by_default != "AUTO") {
-      EXPECT_LT(least[0], std::stod(by_default));
+      EXPECT_LE(least[0], std::stod(by_default));
       EXPECT_LT(std::stod(by_default), most[0]);
     }
-    EXPECT_EQ(i.ask(command + " MAX;:" + command + " DEF;:" + command + "?"), by_default);
+    EXPECT_EQ(first_of(i.ask(command + " MAX;:" + command + " DEF;:" + command + "?")), by_default);
     // A maximum may be more than other settings leave room for.
     EXPECT_EQ(i.errors().find("-1"), std::string::npos);
   }
@@ -129,6 +144,37 @@ TEST(Instrument, TakesTheDefaultsOfTheSweepFromTheBoard) {
       i.ask("SOUR:LEV DEF;LEV?;LEV? DEF;:SWE:SETT DEF;SETT?;CYCL DEF;CYCL?;:REF:SENS DEF;SENS?"),
       "3;3;0.5;7;0.25,0.5");
   EXPECT_EQ(i.ask("*RST;:SOUR:LEV?;:SWE:CYCL?"), "3;7");
+}
+
+TEST(Instrument, KeepsAnUncertaintyThatIsNotGiven) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("CORR:RAT 1.5,0.25;RAT 1.25;RAT?"), "1.25,0.25");
+  EXPECT_EQ(i.ask("CORR:RAT DEF,DEF;RAT?;RAT? MAX"), "1,0;10");
+  EXPECT_EQ(error_of(i, "CORR:RAT 1.5,51"), "-222,\"Data out of range;51\"");
+  EXPECT_EQ(i.ask("CORR:RAT?"), "1,0");
+  EXPECT_EQ(i.numbers("DEV:GAIN?"), (std::vector<double>{1.0, 0.1}));
+  EXPECT_EQ(i.ask("DEV:GAIN 0.5"), "");
+  EXPECT_EQ(i.numbers("DEV:GAIN?"), (std::vector<double>{0.5, 0.1}));
+  EXPECT_EQ(i.numbers("CORR:SKEW?"), (std::vector<double>{1.25e-6, 0.0}));
+  EXPECT_EQ(i.ask("CORR:SKEW 3 US,2 NS"), "");
+  const std::vector<double> skew = i.numbers("CORR:SKEW?");
+  ASSERT_EQ(skew.size(), 2U);
+  EXPECT_NEAR(skew[0], 3e-6, 1e-21);  // A multiplier rounds.
+  EXPECT_NEAR(skew[1], 2e-9, 1e-24);
+  EXPECT_EQ(error_of(i, "CORR:SKEW 2MS"), "-222,\"Data out of range;2MS\"");
+  EXPECT_EQ(i.numbers("MOUN:UNC?"), std::vector<double>{0.2});
+  EXPECT_EQ(i.ask("MOUN:UNC 0.5 PCT;UNC?"), "0.5");
+}
+
+TEST(Instrument, TakesTheReferenceOverFrequency) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("REF:TABL 10,0.25,1000,0.5,5000,0.75;SENS?"), "0.25,0.5");
+  EXPECT_EQ(i.ask("REF:TABL:CLE;:REF:TABL?"), "0,0.25");
+  const char* kExpected = "-109,\"Missing parameter;2 to 32 pairs of Hz and V/(m/s2)\"";
+  EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000"), kExpected);
+  EXPECT_EQ(error_of(i, "REF:TABL 10,0.25"), kExpected);
+  EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000,0"), "-222,\"Data out of range;0\"");
+  EXPECT_EQ(i.ask("REF:TABL?"), "0,0.25");
 }
 
 TEST(Instrument, NamesTheSettingThatIsInConflict) {

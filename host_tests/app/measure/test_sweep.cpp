@@ -119,6 +119,58 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
   }
 }
 
+// A front end of 1:4 for the drive, 1:2 for the reference and 1:1/2 for the device: in words the
+// bench is the same, and a conditioner of the same factor makes the results the same, too.
+TEST(Sweep, ScalesByTheFrontEnd) {
+  SweepRun plain{BenchSettings()};
+  SweepSettings settings = default_sweep_settings();
+  settings.frequency_hz = {200.0, 1000.0, 4000.0};
+  settings.frequency_count = 3;
+  plain.to_end(settings);
+  ASSERT_EQ(plain.sweep.status, Status::kOk);
+  SweepRun scaled{BenchSettings()};
+  settings.drive_full_scale_v = 40.0;
+  settings.drive_limit_v *= 4.0;
+  settings.slew_v_per_s *= 4.0;
+  settings.reference_full_scale_v = 20.0;
+  settings.reference_gain *= 2.0;
+  settings.device_full_scale_v = 5.0;
+  settings.device_gain *= 0.5;
+  scaled.to_end(settings);
+  ASSERT_EQ(scaled.sweep.status, Status::kOk);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SweepPoint& one = plain.sweep.points()[i];
+    const SweepPoint& other = scaled.sweep.points()[i];
+    // Powers of two: nothing is rounded.
+    EXPECT_EQ(other.point.amplitude, one.point.amplitude);
+    EXPECT_EQ(other.point.phase_rad, one.point.phase_rad);
+    EXPECT_EQ(other.point.u_amplitude, one.point.u_amplitude);
+    EXPECT_EQ(other.acceleration_mps2, one.acceleration_mps2);
+    EXPECT_EQ(other.drive_v, 4.0 * one.drive_v);
+  }
+  EXPECT_EQ(scaled.sweep.noise.reference_v, 2.0 * plain.sweep.noise.reference_v);
+  EXPECT_EQ(scaled.sweep.noise.device_v, 0.5 * plain.sweep.noise.device_v);
+}
+
+TEST(Sweep, TakesTheCorrectionsOut) {
+  SweepRun run(ideal_bench());
+  SweepSettings settings = default_sweep_settings();
+  settings.frequency_hz = {200.0, 1000.0, 4000.0};
+  settings.frequency_count = 3;
+  settings.ratio_correction = 1.03;
+  settings.skew_s = 1.25e-6 + 3e-6;
+  run.to_end(settings);
+  ASSERT_EQ(run.sweep.status, Status::kOk);
+  for (const SweepPoint& point : run.sweep.points()) {
+    const std::complex<double> k =
+        response_of(run.bench.truth().device, 1.037, point.point.frequency_hz) / 1.03 *
+        std::polar(1.0, -6.283185307179586 * point.point.frequency_hz * 3e-6);
+    const std::complex<double> found = std::polar(point.point.amplitude, point.point.phase_rad);
+    // Far below either correction; the suspension still swings a little after three periods.
+    EXPECT_LT(std::abs(found / k - 1.0), 1e-4) << point.point.frequency_hz;
+  }
+}
+
 void expect_same_points(const SweepResults& sweep, const std::vector<SweepPoint>& expected) {
   ASSERT_EQ(sweep.points().size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -365,7 +417,12 @@ TEST(Sweep, LevelAtTheAccelerationLimit) {
 TEST(Sweep, UnreachableLevel) {
   SweepSettings settings = default_sweep_settings();
   settings.level_mps2 = 19.0;  // 5 V reach 10 m/s^2.
-  SweepRun run((BenchSettings()));
+  settings.reference_gain = 1.0;
+  settings.device_gain = 0.1;  // Within the converters' range.
+  BenchSettings bench;
+  bench.reference_gain = 1.0;
+  bench.device_gain = 0.1;
+  SweepRun run(bench);
   run.to_end(settings);
   EXPECT_EQ(run.sweep.status, Status::kLevelNotReached);
   EXPECT_EQ(run.sweep.failed_frequency_hz, 160.0);
@@ -511,7 +568,18 @@ const BadSetting kBad[] = {
     {"reference uncertainty", [](SweepSettings& s) { s.reference.expanded_percent = kNan; }},
     {"reference gain", [](SweepSettings& s) { s.reference_gain = 0.0; }},
     {"device gain", [](SweepSettings& s) { s.device_gain = -1.0; }},
-    {"gain uncertainty", [](SweepSettings& s) { s.gain_expanded_percent = 51.0; }},
+    {"reference gain uncertainty",
+     [](SweepSettings& s) { s.reference_gain_expanded_percent = 51.0; }},
+    {"device gain uncertainty", [](SweepSettings& s) { s.device_gain_expanded_percent = -1.0; }},
+    {"ratio correction", [](SweepSettings& s) { s.ratio_correction = 0.0; }},
+    {"ratio uncertainty", [](SweepSettings& s) { s.ratio_expanded_percent = 51.0; }},
+    {"skew uncertainty", [](SweepSettings& s) { s.skew_expanded_s = -1e-9; }},
+    {"clock uncertainty", [](SweepSettings& s) { s.clock_expanded_ppm = 10001.0; }},
+    {"crosstalk", [](SweepSettings& s) { s.crosstalk_expanded_percent = -1.0; }},
+    {"linearity", [](SweepSettings& s) { s.linearity_expanded_percent = 51.0; }},
+    {"drive full scale", [](SweepSettings& s) { s.drive_full_scale_v = -1.0; }},
+    {"reference full scale", [](SweepSettings& s) { s.reference_full_scale_v = 1e-10; }},
+    {"device full scale", [](SweepSettings& s) { s.device_full_scale_v = 2e9; }},
     {"mounting uncertainty", [](SweepSettings& s) { s.mounting_expanded_percent = kNan; }},
     {"skew", [](SweepSettings& s) { s.skew_s = 0.1; }},
     {"skew", [](SweepSettings& s) { s.skew_s = kNan; }},

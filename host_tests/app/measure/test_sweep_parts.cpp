@@ -113,7 +113,7 @@ TEST(DriveOscillator, KeepsAmplitudeSlopeAndPhase) {
 
 TEST(SilenceRecord, FindsOffsetNoiseAndHum) {
   SilenceRecord record;
-  record.start(kFormat);
+  record.start(kFormat, {10.0, 10.0, 10.0});
   emax::sim::Noise noise;
   noise.seed(5);
   std::array<Frame, 50> frames = {};
@@ -147,7 +147,8 @@ TEST(SilenceRecord, FindsOffsetNoiseAndHum) {
 
 TEST(SilenceRecord, EmptyGivesZeros) {
   SilenceRecord record;
-  record.start({200.0, 10.0, 10.0, 64, 0});  // Most lines are beyond half of it.
+  record.start({200.0, 10.0, 10.0, 64, 0},
+               {10.0, 10.0, 10.0});  // Most lines are beyond half of it.
   EXPECT_EQ(record.reference().noise_v, 0.0);
   EXPECT_EQ(record.device().hum_v[5], 0.0);
 }
@@ -278,6 +279,12 @@ TEST(SweepBudget, CommonPart) {
   EXPECT_NEAR(common.gain, 0.0005, 1e-15);
   EXPECT_NEAR(common.mounting, 0.001, 1e-15);
   EXPECT_NEAR(common.drift, 3e-3 / std::sqrt(3.0), 1e-12);
+  // 0.3, 0.4 and 1.2 percent are 1.3 percent together, expanded.
+  emax::app::SweepSettings gains = settings;
+  gains.reference_gain_expanded_percent = 0.3;
+  gains.device_gain_expanded_percent = 0.4;
+  gains.ratio_expanded_percent = 1.2;
+  EXPECT_NEAR(emax::app::common_budget(gains, 0.0).gain, 0.0065, 1e-15);
   EXPECT_NEAR(common.total, std::sqrt(0.0025 * 0.0025 + 0.0005 * 0.0005 + 0.001 * 0.001 + 3e-6),
               1e-12);
 }

@@ -145,8 +145,8 @@ TEST(Measurement, Report) {
   for (const char* words :
        {"measured on the simulated bench", "42 points from 30 Hz to 6000 Hz", "simulated, seed 1",
         "1 m/s^2 peak, never above 20 m/s^2", "never above 5 V and 100000 V/s",
-        "0.1 V/(m/s^2), U = 0.5 %", "gain 10 (reference) and 1 (device), U = 0.1 %", "1.25 us",
-        "42 of 42", "Flagged                   none", "at 160 Hz ", " % drift",
+        "0.1 V/(m/s^2), U = 0.5 %", "gain 10 (reference, U = 0 %) and 1 (device, U = 0.1 %)",
+        "1.25 us", "42 of 42", "Flagged                   none", "at 160 Hz ", " % drift",
         "reference 0.2500 %, gains 0.0500 %, mounting 0.1000 %, drift 0.", "ISO 16063-21",
         "S = 1.037 V/(m/s^2), f0 = 4073 Hz, beta = 0.3182",
         "both with the part that is common to all points",

@@ -109,7 +109,17 @@ void fill(Settings& settings, SweepSettings& sweep) {
   sweep.reference.expanded_percent = 0.7;
   sweep.reference_gain = 3.0;
   sweep.device_gain = 5.0;
-  sweep.gain_expanded_percent = 0.11;
+  sweep.reference_gain_expanded_percent = 0.05;
+  sweep.device_gain_expanded_percent = 0.11;
+  sweep.ratio_correction = 1.03;
+  sweep.ratio_expanded_percent = 0.02;
+  sweep.skew_expanded_s = 1e-8;
+  sweep.clock_expanded_ppm = 50.0;
+  sweep.crosstalk_expanded_percent = 0.03;
+  sweep.linearity_expanded_percent = 0.04;
+  sweep.drive_full_scale_v = 11.0;
+  sweep.reference_full_scale_v = 12.0;
+  sweep.device_full_scale_v = 13.0;
   sweep.mounting_expanded_percent = 0.22;
   sweep.skew_s = -2e-6;
   sweep.check_hz = 80.0;
@@ -133,7 +143,9 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
   EXPECT_EQ(found.reference.expanded_percent, expected.reference.expanded_percent);
   EXPECT_EQ(found.reference_gain, expected.reference_gain);
   EXPECT_EQ(found.device_gain, expected.device_gain);
-  EXPECT_EQ(found.gain_expanded_percent, expected.gain_expanded_percent);
+  for (const emax::app::SettingField& field : fields_of(expected)) {
+    EXPECT_TRUE(is_same(field, &found, &expected)) << field.name;
+  }
   EXPECT_EQ(found.mounting_expanded_percent, expected.mounting_expanded_percent);
   EXPECT_EQ(found.skew_s, expected.skew_s);
   EXPECT_EQ(found.check_hz, expected.check_hz);
@@ -143,7 +155,7 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
 TEST(SavedSettings, ComeBackAsTheyWere) {
   Settings settings = kDefaultSettings;
   SweepSettings sweep = default_sweep_settings();
-  EXPECT_EQ(encoded(settings, sweep).size(), 229U + 8 * 5 + 8 * 42 + 16 * 1);
+  EXPECT_EQ(encoded(settings, sweep).size(), 309U + 8 * 5 + 8 * 42 + 16 * 1);
   Target target;
   ASSERT_EQ(target.decode(encoded(settings, sweep)), Status::kOk);
   expect_same(target.sweep, sweep);
@@ -182,7 +194,7 @@ TEST(SavedSettings, ComeBackAsTheyWere) {
 TEST(SavedSettings, BytesOfTheDefaults) {
   const Bytes bytes = encoded(kDefaultSettings, default_sweep_settings());
   const std::array<std::uint8_t, 33> expected = {
-      'E',  'S',  2,    0,                              // Kind and version.
+      'E',  'S',  3,    0,                              // Kind and version.
       10,   0,    0,    0,                              // Order.
       0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x8F, 0x40,   // 1000.0.
       0,                                                // GainMode::kAuto.
@@ -493,7 +505,7 @@ TEST(SavedSettings, CutAtEveryByteOfTheMemory) {
     ASSERT_TRUE(target.settings.trials == 1002 || (was_cut && target.settings.trials == 1001));
   }
   // A slot erased, and the record with its frame in whole units.
-  EXPECT_EQ(cuts, 1536U + (621U + 20U + 31U) / 32U * 32U + 1U);
+  EXPECT_EQ(cuts, 1536U + (701U + 20U + 31U) / 32U * 32U + 1U);
 }
 
 }  // namespace

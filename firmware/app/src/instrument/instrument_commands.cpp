@@ -1,6 +1,8 @@
 // The command table of the instrument, one line for each command; IEEE 488.2, and what starts work.
 #include "instrument_commands.hpp"
 
+#include <array>
+
 #include "emax/app/base/version.hpp"
 #include "emax/app/instrument/self_test.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
@@ -123,6 +125,8 @@ constexpr scpi::Command<Instrument> kCommon[] = {
     {"STATus:PRESet", kSet, "", "Nothing enabled, rises are events", kPlain, standard<scpi::status_preset, I>},
 
     {"[SENSe:]REFerence:SENSitivity", kBoth, "<V/(m/s2)>[,<percent>]", "Of the reference sensor, and its expanded uncertainty", kPlain, C::reference},
+    {"[SENSe:]REFerence:TABLe", kBoth, "<f1>,<S1>,...", "Of the reference over frequency, 2 to 32 pairs; 0,S where it is one value", kPlain, C::reference_table},
+    {"[SENSe:]REFerence:TABLe:CLEar", kSet, "", "One value again: the first of the table", kPlain, C::clear_reference_table},
     {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, ascending", kPlain, C::sweep_frequencies},
     {"[SENSe:]SWEep:FREQuency:DEFault", kSet, "", "The 42 frequencies of the default sweep", kPlain, C::default_frequencies},
 };
@@ -195,7 +199,43 @@ constexpr auto all_commands() noexcept {
   return table;
 }
 
-constexpr auto kCommands = all_commands();
+// What only people read stays apart, so that a board that shows none of it does not hold it.
+constexpr auto kDescribed = all_commands();
+
+constexpr std::size_t description_bytes() noexcept {
+  std::size_t bytes = 0;
+  for (const auto& row : kDescribed.rows) {
+    for (const char* c = row.description; *c != '\0'; ++c) {
+      ++bytes;
+    }
+    ++bytes;
+  }
+  return bytes;
+}
+
+constexpr auto without_descriptions() noexcept {
+  auto table = kDescribed;
+  for (auto& row : table.rows) {
+    row.description = "";
+  }
+  return table;
+}
+
+// One array of characters: the literals of a source are kept all or none.
+constexpr auto descriptions() noexcept {
+  std::array<char, description_bytes()> text = {};
+  std::size_t at = 0;
+  for (const auto& row : kDescribed.rows) {
+    for (const char* c = row.description; *c != '\0'; ++c) {
+      text[at++] = *c;
+    }
+    text[at++] = '\0';
+  }
+  return text;
+}
+
+constexpr auto kCommands = without_descriptions();
+constexpr auto kDescriptions = descriptions();
 static_assert(kCommands.count == size_of(kCommands.rows),
               "a setting of a group that is not listed");
 static_assert(scpi::first_bad_row(kCommands.rows) == kCommands.count);
@@ -205,5 +245,7 @@ static_assert(scpi::first_bad_row(kCommands.rows) == kCommands.count);
 scpi::Table<Instrument> Instrument::commands() noexcept {
   return scpi::Table<Instrument>(kCommands.rows);
 }
+
+const char* Instrument::command_descriptions() noexcept { return kDescriptions.data(); }
 
 }  // namespace emax::app

@@ -42,6 +42,8 @@ struct InstrumentCommands {
 
   static void seed(Instrument& i, Call& call) noexcept;
   static void reference(Instrument& i, Call& call) noexcept;
+  static void reference_table(Instrument& i, Call& call) noexcept;
+  static void clear_reference_table(Instrument& i, Call& call) noexcept;
   static void sweep_frequencies(Instrument& i, Call& call) noexcept;
   static void default_frequencies(Instrument& i, Call& call) noexcept;
 

@@ -156,6 +156,7 @@ struct ReferenceValue {
 [[gnu::noinline]] void take_reference(Instrument& i, scpi::Call& call,
                                       const ReferenceValue& value) noexcept {
   SweepSettings next = i.sweep_settings();
+  next.reference.frequency_hz[0] = 0.0;
   next.reference.sensitivity[0] = value.sensitivity;
   next.reference.expanded_percent = value.expanded_percent;
   next.reference.count = 1;
@@ -171,10 +172,26 @@ struct ReferenceValue {
   InstrumentCommands::take(i, call, next);
 }
 
-[[gnu::noinline]] void take_value(Instrument& i, scpi::Call& call, const SettingField& field,
-                                  const SettingValue& value) noexcept {
+[[gnu::noinline]] void take_table(Instrument& i, scpi::Call& call,
+                                  const std::array<double, 2 * kMaxReferencePoints>& pairs,
+                                  std::size_t count) noexcept {
   SweepSettings next = i.sweep_settings();
-  store(field, value, &next);
+  for (std::size_t k = 0; k < count; ++k) {
+    next.reference.frequency_hz[k] = pairs[2 * k];
+    next.reference.sensitivity[k] = pairs[2 * k + 1];
+  }
+  next.reference.count = count;
+  InstrumentCommands::take(i, call, next);
+}
+
+/// @param[in] uncertainty The new value of the next field; null if it keeps its own.
+[[gnu::noinline]] void take_value(Instrument& i, scpi::Call& call, const SettingField* field,
+                                  const SettingValue& value, const double* uncertainty) noexcept {
+  SweepSettings next = i.sweep_settings();
+  store(*field, value, &next);
+  if (uncertainty != nullptr) {
+    store(field[1], {*uncertainty, 0}, &next);
+  }
   InstrumentCommands::take(i, call, next);
 }
 
@@ -210,12 +227,29 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
 
 void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t index) noexcept {
   const SettingCommand& command = kSweepCommands[index];
-  const SettingField& field = fields_of(i.sweep_settings())[command.field];
+  // With the one behind it, which is its uncertainty where it has one.
+  const SettingField* field = &fields_of(i.sweep_settings())[command.field];
+  const bool has_two = command.next_unit != nullptr;
+  double uncertainty = has_two ? number_in(field[1], &i.sweep_settings()) : 0.0;
+  // MINimum and others are asked of the value alone.
+  const bool answers_both = has_two && call.is_query() && !call.has_more();
   SettingValue value;
-  if (SettingCall(call, command, field, &i.sweep_settings())
-          .take(default_number(i, field), value)) {
-    take_value(i, call, field, value);
+  if (!SettingCall(call, command, *field, &i.sweep_settings())
+           .take(default_number(i, *field), value)) {
+    if (answers_both) {
+      call.answer().number(uncertainty);
+    }
+    return;
   }
+  const bool is_given = has_two && call.has_more();
+  if (is_given) {
+    const NumberRule rule = {field[1].min, field[1].max, default_number(i, field[1]),
+                             command.next_unit};
+    if (!call.number(rule, uncertainty)) {
+      return;
+    }
+  }
+  take_value(i, call, field, value, is_given ? &uncertainty : nullptr);
 }
 
 void InstrumentCommands::seed(Instrument& i, Call& call) noexcept {
@@ -256,6 +290,35 @@ void InstrumentCommands::reference(Instrument& i, Call& call) noexcept {
     return;
   }
   take_reference(i, call, value);
+}
+
+void InstrumentCommands::reference_table(Instrument& i, Call& call) noexcept {
+  const ReferenceCalibration& current = i.sweep_settings().reference;
+  if (call.stage() == Call::Stage::kItem) {
+    call.answer().number(current.frequency_hz[call.item()]);
+    call.answer().number(current.sensitivity[call.item()]);
+    return;
+  }
+  if (call.is_query()) {
+    call.answer_items(current.count);
+    return;
+  }
+  std::array<double, 2 * kMaxReferencePoints> pairs = {};
+  std::size_t count = 0;
+  if (!call.numbers({ranges::kSmallest, ranges::kLargest, kNoDefault, nullptr}, Span<double>(pairs),
+                    count)) {
+    return;
+  }
+  if (count % 2 != 0 || count < 4) {
+    call.fail(ErrorCode::kMissingParameter, "2 to 32 pairs of Hz and V/(m/s2)");
+    return;
+  }
+  take_table(i, call, pairs, count / 2);
+}
+
+void InstrumentCommands::clear_reference_table(Instrument& i, Call& call) noexcept {
+  const ReferenceCalibration& current = i.sweep_settings().reference;
+  take_reference(i, call, {current.sensitivity[0], current.expanded_percent});
 }
 
 void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {

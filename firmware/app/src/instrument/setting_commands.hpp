@@ -20,6 +20,7 @@ struct SettingCommand {
   double min = 0.0;
   double max = 0.0;
   const char* unit = nullptr;
+  const char* next_unit = nullptr;  ///< As in `CommandText`.
   const char* const* words = nullptr;
   std::uint8_t word_count = 0;
   std::uint8_t field = 0;  ///< Its place among the fields of its structure.
@@ -47,6 +48,7 @@ constexpr std::array<SettingCommand, kCommands> setting_commands(
       command.min = text.min;
       command.max = text.max;
       command.unit = text.unit;
+      command.next_unit = text.next_unit;
       command.words = rows[i].words;
       command.word_count = static_cast<std::uint8_t>(rows[i].word_count);
       command.field = static_cast<std::uint8_t>(i);

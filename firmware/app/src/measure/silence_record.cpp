@@ -17,11 +17,12 @@ double SilentChannel::hum_in_fit_v(double frequency_hz, double duration_s) const
   return sqrt(squares);
 }
 
-void SilenceRecord::start(const hal::StreamFormat& format) noexcept {
+void SilenceRecord::start(const hal::StreamFormat& format, const FullScales& scales) noexcept {
   half_ = static_cast<std::uint32_t>(floor(0.5 * kDuration_s * format.sample_rate_hz)) + 1u;
   frames_ = 0;
   rise_ = Rise();
-  volts_per_word_ = hal::volts_per_word(format.input_full_scale_v);
+  volts_per_word_ = hal::volts_per_word(scales.reference_v);
+  device_scale_ = scales.device_v / scales.reference_v;
   for (std::size_t i = 0; i < kHumLines; ++i) {
     // A line beyond half the sample rate is refused, and its fit stays without a result.
     fits_[i] = FrameSineFit();
@@ -46,25 +47,26 @@ SilentChannel SilenceRecord::reference() const noexcept {
   for (std::size_t i = 0; i < kHumLines; ++i) {
     lines[i] = fits_[i].reference();
   }
-  return evaluate(lines, rise_.reference);
+  return evaluate(lines, rise_.reference, volts_per_word_);
 }
 
 SilentChannel SilenceRecord::device() const noexcept {
   Lines lines;
   for (std::size_t i = 0; i < kHumLines; ++i) {
-    lines[i] = fits_[i].device();
+    lines[i] = in_volts(fits_[i].device(), device_scale_);
   }
-  return evaluate(lines, rise_.device);
+  return evaluate(lines, rise_.device, device_scale_ * volts_per_word_);
 }
 
-SilentChannel SilenceRecord::evaluate(const Lines& lines, std::int64_t rise) const noexcept {
+SilentChannel SilenceRecord::evaluate(const Lines& lines, std::int64_t rise,
+                                      double volts_per_word) const noexcept {
   SilentChannel channel;
   const SineFitResult& first = lines[0];
   if (first.samples == 0) {
     return channel;
   }
   channel.offset_v = first.offset_v;
-  channel.drift_v = volts_per_word_ * static_cast<double>(rise) / static_cast<double>(half_);
+  channel.drift_v = volts_per_word * static_cast<double>(rise) / static_cast<double>(half_);
   // Without the first line; the other lines are taken out below.
   double variance = first.residual_std_v * first.residual_std_v;
   for (std::size_t i = 1; i < kHumLines; ++i) {

@@ -2,6 +2,7 @@
 #include "emax/app/measure/sweep.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
@@ -12,7 +13,10 @@ namespace {
 constexpr double kSettlePeriods = 3.0;
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
+constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
+constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
+constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once.
 constexpr double kCautiousShare = 0.25;  // Of the limit, before this frequency was seen.
 constexpr std::uint64_t kMinEqualWords = 256;
 
@@ -23,14 +27,18 @@ std::uint32_t frames_of(double frames) noexcept {
 }  // namespace
 
 // Whatever the memory held before. What is not here is written before it is read.
-void SweepWorkspace::begin(const hal::StreamFormat& format) noexcept {
+void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& scales) noexcept {
   format_ = format;
+  format_.drive_full_scale_v = scales.drive_v;
+  scales_ = scales;
   reference_monitor_ = ChannelMonitor();
   device_monitor_ = ChannelMonitor();
   target_ = SweepWorkspace::Target();
   last_ratio_ = Complex();
   drive_per_acceleration_ = 0.0;
   level_scale_ = 1.0;
+  level_room_mps2_ = std::numeric_limits<double>::infinity();
+  device_v_per_v_ = 0.0;
   activity_ = SweepWorkspace::Activity::kSilence;
   is_lowering_ = false;
 }
@@ -49,10 +57,10 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   }
   results_.settings = settings;
   reset();
-  work_.begin(stream_.format());
+  work_.begin(stream_.format(), full_scales(settings, stream_.format()));
   results_.inputs.sample_rate_hz = work_.format_.sample_rate_hz;
   work_.drive_.configure(work_.format_, settings.drive_limit_v, settings.slew_v_per_s);
-  work_.silence_.start(work_.format_);
+  work_.silence_.start(work_.format_, work_.scales_);
   work_.left_ = work_.silence_.frames();
   results_.stage = SweepStage::kSilence;
   return Status::kOk;
@@ -157,7 +165,7 @@ void Sweep::watch() noexcept {
 
 /// The largest distance of the block from the offset, which is taken to a word.
 double Sweep::reference_peak_v() const noexcept {
-  const double volts = hal::volts_per_word(work_.format_.input_full_scale_v);
+  const double volts = hal::volts_per_word(work_.scales_.reference_v);
   const auto offset = static_cast<std::int64_t>(results_.inputs.silent_reference.offset_v / volts);
   std::int64_t peak = 0;
   for (std::size_t i = 0; i < work_.format_.block_frames; ++i) {
@@ -169,6 +177,17 @@ double Sweep::reference_peak_v() const noexcept {
 
 void Sweep::lower_level() noexcept {
   work_.target_.was_overrange = true;
+  if (!(work_.drive_per_acceleration_ > 0.0)) {
+    // The first look: nothing is known yet, so it is the drive that was too much, not the level.
+    ++work_.target_.tries;
+    if (work_.target_.tries > kMostLooks) {
+      fail(Status::kSaturated);
+      return;
+    }
+    work_.is_lowering_ = true;
+    drive_to(kLookShare * work_.drive_.amplitude_v());
+    return;
+  }
   work_.level_scale_ *= 0.5;
   if (work_.level_scale_ < kLeastScale) {
     fail(Status::kSaturated);
@@ -200,7 +219,7 @@ void Sweep::end_activity() noexcept {
       work_.activity_ = SweepWorkspace::Activity::kMeasuring;
       // The rates were checked by `start()`.
       (void)work_.fit_.start(work_.target_.frequency_hz, work_.format_.sample_rate_hz,
-                             hal::volts_per_word(work_.format_.input_full_scale_v));
+                             hal::volts_per_word(work_.scales_.reference_v));
       begin_repeat();
       return;
     case SweepWorkspace::Activity::kMeasuring:
@@ -217,9 +236,8 @@ void Sweep::end_activity() noexcept {
 void Sweep::end_silence() noexcept {
   results_.inputs.silent_reference = work_.silence_.reference();
   results_.inputs.silent_device = work_.silence_.device();
-  const double most_v = kWanderShare * work_.format_.input_full_scale_v;
-  if (abs(results_.inputs.silent_reference.drift_v) > most_v ||
-      abs(results_.inputs.silent_device.drift_v) > most_v) {
+  if (abs(results_.inputs.silent_reference.drift_v) > kWanderShare * work_.scales_.reference_v ||
+      abs(results_.inputs.silent_device.drift_v) > kWanderShare * work_.scales_.device_v) {
     fail(Status::kDcDrift);
     return;
   }
@@ -228,7 +246,9 @@ void Sweep::end_silence() noexcept {
 }
 
 double Sweep::aim_mps2() const noexcept {
-  const double wanted = work_.level_scale_ * results_.settings.level_mps2;
+  const double room = work_.level_room_mps2_;
+  const double level = results_.settings.level_mps2;
+  const double wanted = work_.level_scale_ * (level < kRoomShare * room ? level : 0.5 * room);
   const double most = (work_.target_.is_close ? kLimitShare : kCautiousShare) *
                       results_.settings.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
@@ -255,6 +275,9 @@ void Sweep::begin_target(double frequency_hz) noexcept {
                            ? aim_mps2() * work.drive_per_acceleration_
                            : kFirstDriveShare * settings.drive_limit_v;
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
+  target.is_close = true;
+  target.permitted_v = SweepWorkspace::kPermittedStep * aim_mps2() * work.drive_per_acceleration_;
+  target.is_close = false;
   drive_to(amplitude_v);
 }
 
@@ -297,9 +320,8 @@ void Sweep::finish() noexcept {
   SweepResults& results = results_;
   SweepWorkspace& work = work_;
   BudgetInputs& inputs = results.inputs;
-  const double volts = work.format_.input_full_scale_v;
-  inputs.reference_step_v = volts * work.reference_monitor_.step();
-  inputs.device_step_v = volts * work.device_monitor_.step();
+  inputs.reference_step_v = work.scales_.reference_v * work.reference_monitor_.step();
+  inputs.device_step_v = work.scales_.device_v * work.device_monitor_.step();
   const double before = norm(results.check_before);
   const double after = norm(results.check_after);
   const bool has_checks = before > 0.0 && after > 0.0;

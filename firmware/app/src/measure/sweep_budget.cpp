@@ -131,7 +131,10 @@ PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
 CommonBudget common_budget(const SweepSettings& settings, double check_change) noexcept {
   CommonBudget common;
   common.reference = settings.reference.expanded_percent / kPercentPerStandard;
-  common.gain = settings.gain_expanded_percent / kPercentPerStandard;
+  common.gain = length(length(settings.reference_gain_expanded_percent,
+                              settings.device_gain_expanded_percent),
+                       settings.ratio_expanded_percent) /
+                kPercentPerStandard;
   common.mounting = settings.mounting_expanded_percent / kPercentPerStandard;
   common.drift = abs(check_change) / kSqrt3;
   common.total =

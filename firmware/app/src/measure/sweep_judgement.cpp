@@ -10,6 +10,10 @@ namespace {
 constexpr double kWeakSigmas = 8.0;
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
+constexpr double kBlindShare = 0.1;       // Of the drive limit, while nothing was seen at all.
+constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
+constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
+constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
 constexpr std::uint32_t kMaxTries = 12;
 constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
 constexpr double kDistortedShare = 0.1;  // An error above,
@@ -67,7 +71,7 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
 
 void Sweep::end_repeat() noexcept {
   const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
-  const Reading device = reading_of(work_.fit_.device(), results_.inputs.silent_device);
+  const Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
   if (work_.repeats_.count == 0) {
     judge_first(reference, device);
     if (done() || work_.block_is_spent_) {
@@ -101,11 +105,9 @@ void Sweep::end_repeat() noexcept {
 
 // The first repeat after each change of the drive: is there a signal, and is the level right?
 void Sweep::judge_first(const Reading& reference, const Reading& device) noexcept {
-  if (reference.is_weak() || device.is_weak()) {
-    if (reference.is_weak() && device.is_strong()) {
+  if (reference.is_weak()) {
+    if (device.is_strong()) {
       suspect(Status::kNoReference);
-    } else if (device.is_weak() && reference.is_strong()) {
-      suspect(Status::kNoDevice);
     } else {
       raise_drive();
     }
@@ -113,15 +115,28 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   }
   const double acceleration = acceleration_of(reference.fit.amplitude_v);
   const double drive_v = work_.drive_.amplitude_v();
-  work_.target_.acceleration_mps2 = acceleration;
+  const double per_acceleration = drive_v / acceleration;
   work_.target_.is_close = true;
-  work_.drive_per_acceleration_ = drive_v / acceleration;
+  if (!(work_.drive_per_acceleration_ > 0.0)) {
+    work_.level_room_mps2_ = room_mps2(reference.fit.amplitude_v, device.fit.amplitude_v);
+  }
   const double aim = aim_mps2();
+  const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
+  const bool is_low = acceleration < aim * (1.0 - kLevelTolerance);
+  if (device.is_weak() && (!is_low || drive_v >= most_v)) {
+    // More drive would not be within the level.
+    suspect(reference.is_strong() ? Status::kNoDevice : Status::kWeakSignal);
+    return;
+  }
+  if (is_low && !may_rise(reference, device, aim * per_acceleration)) {
+    return;
+  }
+  work_.target_.acceleration_mps2 = acceleration;
+  work_.drive_per_acceleration_ = per_acceleration;
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
     return;
   }
-  const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
-  const double needed_v = aim * work_.drive_per_acceleration_;
+  const double needed_v = aim * per_acceleration;
   ++work_.target_.tries;
   if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
     fail(Status::kLevelNotReached);
@@ -133,8 +148,65 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   drive_to(needed_v < most_v ? needed_v : most_v);
 }
 
+// What takes one of the channels to full scale, as far as their gains can be believed: of a
+// device far from its data sheet the gain is in doubt, and it is judged at the full level.
+double Sweep::room_mps2(double reference_v, double device_v) const noexcept {
+  const double of_reference = acceleration_of(work_.scales_.reference_v);
+  const double sheet = results_.settings.expected_sensitivity;
+  const double sensitivity = ratio_factor() * device_v / reference_v;
+  const bool is_check = results_.stage == SweepStage::kCheckBefore;
+  if (is_check && sheet > 0.0 && is_beyond(sensitivity / sheet, kPlausibleFactor)) {
+    return of_reference;
+  }
+  const double of_device = work_.scales_.device_v * acceleration_of(reference_v) / device_v;
+  return of_device < of_reference ? of_device : of_reference;
+}
+
+// More drive, because the reference reads less than the level. It may read less because it has just
+// died, or because its gain has changed: the limit of acceleration depends on it.
+bool Sweep::may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept {
+  const double drive_v = work_.drive_.amplitude_v();
+  const double samples = static_cast<double>(work_.target_.repeat_frames);
+  const double distortion =
+      distortion_of(reference.fit.residual_std_v, results_.inputs.silent_reference.noise_v,
+                    reference.fit.amplitude_v, samples);
+  const bool is_look = !(work_.drive_per_acceleration_ > 0.0);
+  SweepWorkspace::Target& target = work_.target_;
+  const bool is_permitted = is_look || needed_v <= target.permitted_v;
+  if (is_permitted && distortion <= kDistortedShare) {
+    target.permitted_v = is_look ? SweepWorkspace::kPermittedStep * needed_v : target.permitted_v;
+    return true;
+  }
+  if (!is_permitted && work_.device_v_per_v_ > 0.0 &&
+      device.fit.amplitude_v > kContradiction * drive_v * work_.device_v_per_v_) {
+    // The device sees as much as before.
+    suspect(Status::kNoReference);
+    return false;
+  }
+  const double per_acceleration = drive_v / acceleration_of(reference.fit.amplitude_v);
+  if (abs(target.unconfirmed_v - per_acceleration) <= kConfirmedWithin * per_acceleration) {
+    const double permitted_v = SweepWorkspace::kPermittedStep * needed_v;
+    target.permitted_v = is_permitted && !is_look ? target.permitted_v : permitted_v;
+    return true;
+  }
+  if (++target.tries > kMaxTries) {
+    fail(Status::kLevelNotReached);
+    return false;
+  }
+  target.unconfirmed_v = per_acceleration;
+  drive_to(is_permitted ? drive_v : kConfirmingShare * drive_v);
+  return false;
+}
+
+// Neither channel has a signal. Once the shaker is known, more drive is no way to find out why.
 void Sweep::raise_drive() noexcept {
-  const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
+  if (work_.drive_per_acceleration_ > 0.0) {
+    suspect(Status::kWeakSignal);
+    return;
+  }
+  const double limit_v = kBlindShare * results_.settings.drive_limit_v;
+  const double permitted_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
+  const double most_v = limit_v < permitted_v ? limit_v : permitted_v;
   if (work_.drive_.amplitude_v() >= most_v) {
     fail(Status::kWeakSignal);
     return;
@@ -148,7 +220,7 @@ void Sweep::raise_drive() noexcept {
 double Sweep::offset_change_v(double reference_v, double device_v) const noexcept {
   const double ratio = norm(results_.check_before) > 0.0
                            ? magnitude(results_.check_before) / ratio_factor()
-                           : work_.fit_.device().amplitude_v / work_.fit_.reference().amplitude_v;
+                           : work_.device_fit().amplitude_v / work_.fit_.reference().amplitude_v;
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 
@@ -159,7 +231,7 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   if (device.is_weak()) {
     return Status::kNoDevice;
   }
-  const double full_scale_v = work_.format_.input_full_scale_v;
+  const double full_scale_v = work_.scales_.device_v;
   const double within_v = offset_change_v(reference.fit.offset_v - work_.first_reference_offset_v_,
                                           device.fit.offset_v - work_.first_device_offset_v_);
   const double since_silence_v =
@@ -195,7 +267,8 @@ void Sweep::suspect(Status status) noexcept {
 // K over the ratio of the volts.
 double Sweep::ratio_factor() const noexcept {
   return sensitivity_at(results_.settings.reference, work_.target_.frequency_hz) *
-         results_.settings.reference_gain / results_.settings.device_gain;
+         results_.settings.reference_gain /
+         (results_.settings.device_gain * results_.settings.ratio_correction);
 }
 
 Complex Sweep::ratio_of(const PointScatter& scatter) const noexcept {
@@ -216,11 +289,13 @@ void Sweep::end_target() noexcept {
   scatter.reference_rest_v = sqrt(work_.reference_rest2_ / repeats);
   scatter.device_rest_v = sqrt(work_.device_rest2_ / repeats);
   const Complex ratio = ratio_of(scatter);
+  work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
   const Status status = plausibility_of(ratio);
   if (status != Status::kOk) {
     suspect(status);
     return;
   }
+  work_.level_room_mps2_ = room_mps2(magnitude(scatter.reference), magnitude(scatter.device));
   if (results_.stage == SweepStage::kPoints) {
     store_point(scatter, ratio);
     work_.last_ratio_ = ratio;

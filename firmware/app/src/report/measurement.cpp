@@ -64,6 +64,44 @@ void write_settings(const Measurement& measurement, ReportWriter& out) noexcept 
   out.text(" ms, each fitted by a sine").line();
 }
 
+// What certificates state of clock and channels, where they state anything.
+void write_stated(const SweepSettings& settings, ReportWriter& out) noexcept {
+  struct Stated {
+    const char* label;
+    double expanded;
+    const char* unit;
+  };
+  const Stated all[] = {
+      {"Clock", settings.clock_expanded_ppm, " ppm of every frequency"},
+      {"Crosstalk", settings.crosstalk_expanded_percent, " % of the other channel"},
+      {"Linearity", settings.linearity_expanded_percent, " % up to full scale"},
+  };
+  for (const Stated& stated : all) {
+    if (stated.expanded > 0.0) {
+      out.label(stated.label).text("U = ").general(stated.expanded, 4).text(stated.unit).line();
+    }
+  }
+}
+
+void write_full_scales(const SweepSettings& settings, ReportWriter& out) noexcept {
+  if (settings.drive_full_scale_v == 0.0 && settings.reference_full_scale_v == 0.0 &&
+      settings.device_full_scale_v == 0.0) {
+    return;
+  }
+  const auto write = [&out](double volts, const char* of) {
+    if (volts > 0.0) {
+      out.general(volts, 6).text(" V").text(of);
+    } else {
+      out.text("the converter's own").text(of);
+    }
+  };
+  out.label("Full scale");
+  write(settings.drive_full_scale_v, " (drive), ");
+  write(settings.reference_full_scale_v, " (reference), ");
+  write(settings.device_full_scale_v, " (device)");
+  out.line();
+}
+
 void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
   const ReferenceCalibration& reference = settings.reference;
   out.label("Reference").general(reference.sensitivity[0], 7).text(" V/(m/s^2)");
@@ -74,12 +112,23 @@ void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
   }
   out.text(", U = ").general(reference.expanded_percent, 4).text(" % (k = 2)").line();
   out.label("Conditioners").text("gain ").general(settings.reference_gain, 6);
-  out.text(" (reference) and ").general(settings.device_gain, 6).text(" (device), U = ");
-  out.general(settings.gain_expanded_percent, 4).text(" % of their ratio").line();
+  out.text(" (reference, U = ").general(settings.reference_gain_expanded_percent, 4);
+  out.text(" %) and ").general(settings.device_gain, 6).text(" (device, U = ");
+  out.general(settings.device_gain_expanded_percent, 4).text(" %)").line();
+  if (settings.ratio_correction != 1.0 || settings.ratio_expanded_percent > 0.0) {
+    out.label("Ratio").text("of the channels ").general(settings.ratio_correction, 8);
+    out.text(", U = ").general(settings.ratio_expanded_percent, 4).text(" %, taken out").line();
+  }
   out.label("Mounting").text("U = ").general(settings.mounting_expanded_percent, 4);
   out.text(" %, with transverse motion and temperature").line();
   out.label("Skew").text("device sampled ").general(kMicro * settings.skew_s, 6);
-  out.text(" us after the reference, taken out").line();
+  out.text(" us after the reference");
+  if (settings.skew_expanded_s > 0.0) {
+    out.text(", U = ").general(kMicro * settings.skew_expanded_s, 4).text(" us");
+  }
+  out.text(", taken out").line();
+  write_stated(settings, out);
+  write_full_scales(settings, out);
 }
 
 void write_silence(const SweepResults& sweep, ReportWriter& out) noexcept {

@@ -166,7 +166,18 @@ void write_bench(const Measurement* measurement, const EvaluationResults* refuse
   json.number("drive_limit", settings.drive_limit_v);
   json.number("slew", settings.slew_v_per_s);
   json.number("reference_percent", settings.reference.expanded_percent);
+  json.number("reference_gain", settings.reference_gain);
+  json.number("reference_gain_percent", settings.reference_gain_expanded_percent);
+  json.number("device_gain", settings.device_gain);
+  json.number("device_gain_percent", settings.device_gain_expanded_percent);
+  json.number("ratio", settings.ratio_correction);
+  json.number("ratio_percent", settings.ratio_expanded_percent);
+  json.number("mounting_percent", settings.mounting_expanded_percent);
   json.number("skew", settings.skew_s);
+  json.number("skew_u", settings.skew_expanded_s);
+  json.number("clock_ppm", settings.clock_expanded_ppm);
+  json.number("crosstalk_percent", settings.crosstalk_expanded_percent);
+  json.number("linearity_percent", settings.linearity_expanded_percent);
   write_common(sweep, json);
   write_budget(sweep, json);
   json.close();

@@ -22,6 +22,8 @@ bool is_positive(double value) noexcept {
   return value >= ranges::kSmallest && value <= ranges::kLargest;
 }
 
+bool is_zero_or_positive(double value) noexcept { return value == 0.0 || is_positive(value); }
+
 double highest_hz(const hal::StreamFormat& format) noexcept {
   return format.sample_rate_hz / kMinSamplesPerPeriod;
 }
@@ -80,13 +82,19 @@ bool is_suitable(std::size_t index, const SweepSettings& s,
     case row("acceleration limit"):
       return s.acceleration_limit_mps2 >= s.level_mps2;
     case row("drive limit"):
-      return s.drive_limit_v <= format.drive_full_scale_v;
+      return s.drive_limit_v <= full_scales(s, format).drive_v;
     case row("slew"):
       return suits_ramp(s, format);
     case row("check frequency"):
       return s.check_hz * ranges::kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
     case row("expected sensitivity"):
-      return s.expected_sensitivity == 0.0 || is_positive(s.expected_sensitivity);
+      return is_zero_or_positive(s.expected_sensitivity);
+    case row("drive full scale"):
+      return is_zero_or_positive(s.drive_full_scale_v);
+    case row("reference full scale"):
+      return is_zero_or_positive(s.reference_full_scale_v);
+    case row("device full scale"):
+      return is_zero_or_positive(s.device_full_scale_v);
     default:
       return true;
   }
@@ -128,13 +136,24 @@ SweepSettings default_sweep_settings() noexcept {
   settings.reference.expanded_percent = 0.5;
   settings.reference_gain = 10.0;
   settings.device_gain = 1.0;
-  settings.gain_expanded_percent = 0.1;
+  settings.device_gain_expanded_percent = 0.1;
+  settings.ratio_correction = 1.0;
   settings.mounting_expanded_percent = 0.2;
   settings.skew_s = 1.25e-6;
   settings.check_hz = 160.0;
   settings.expected_sensitivity = 1.02;
   return settings;
 }
+
+FullScales full_scales(const SweepSettings& settings, const hal::StreamFormat& format) noexcept {
+  const auto or_pin = [](double outside_v, double pin_v) {
+    return outside_v > 0.0 ? outside_v : pin_v;
+  };
+  return {or_pin(settings.drive_full_scale_v, format.drive_full_scale_v),
+          or_pin(settings.reference_full_scale_v, format.input_full_scale_v),
+          or_pin(settings.device_full_scale_v, format.input_full_scale_v)};
+}
+
 double sensitivity_at(const ReferenceCalibration& calibration, double frequency_hz) noexcept {
   const auto& f = calibration.frequency_hz;
   const auto& s = calibration.sensitivity;
@@ -165,7 +184,7 @@ SettingsError check(const SweepSettings& settings, const hal::StreamFormat& form
 
 hal::DriveLimits drive_limits(const SweepSettings& settings,
                               const hal::StreamFormat& format) noexcept {
-  const double full_scale_v = format.drive_full_scale_v;
+  const double full_scale_v = full_scales(settings, format).drive_v;
   const double step_v = settings.slew_v_per_s / format.sample_rate_hz;
   return {hal::greatest_word_within(settings.drive_limit_v, full_scale_v),
           hal::greatest_word_within(step_v, full_scale_v)};

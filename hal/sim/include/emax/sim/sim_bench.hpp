@@ -60,6 +60,8 @@ class SimBench final : public hal::AnalogStream {
   const BenchTruth& truth() const noexcept { return bench_.truth(); }
   const DacRecord& dac() const noexcept { return dac_; }
 
+  /// Largest |acceleration| of the shaker since `configure()`.
+  double peak_mps2() const noexcept { return bench_.peak_mps2(); }
   /// Frames since `configure()`.
   std::uint64_t clock_frames() const noexcept { return bench_.clock_frames(); }
   double now_s() const noexcept;
@@ -92,7 +94,7 @@ class SimBench final : public hal::AnalogStream {
   std::array<hal::Word, kMaxLatencyFrames + 1> pipeline_ = {};  ///< Drive on its way.
   hal::Word last_device_ = 0;
   bool configured_ = false;
-  bool event_over_ = false;  ///< The lost or late block has been.
+  std::array<bool, 2> event_over_ = {};  ///< The lost or late block has been, of each fault.
   bool stuck_ = false;
 };
 

@@ -79,6 +79,7 @@ struct BenchSettings {
   double skew_s = 1.25e-6;        ///< The device is sampled later than the reference; see `Plant`.
   bool ideal_converters = false;  ///< DAC and ADC use all 32 bits of a word; they still clip.
   Fault fault;
+  Fault second_fault;
 };
 
 /// What was drawn, which a calibration cannot know. Constant until the next `configure()`.
@@ -137,6 +138,8 @@ class VoltBench {
 
   const BenchSettings& settings() const noexcept { return settings_; }
   const BenchTruth& truth() const noexcept { return truth_; }
+  /// Largest |acceleration| since `configure()`, whatever the sensors tell.
+  double peak_mps2() const noexcept { return peak_mps2_; }
   /// Steps since `configure()`.
   std::uint64_t clock_frames() const noexcept { return clock_; }
 
@@ -151,7 +154,7 @@ class VoltBench {
 
   void draw() noexcept;
   void refresh() noexcept;
-  void break_down() noexcept;
+  void break_down(FaultKind kind) noexcept;
   double distorted_v(double drive_v) const noexcept;
   double conditioned_v(Channel& channel, double sensor, double noise) const noexcept;
 
@@ -163,6 +166,7 @@ class VoltBench {
   Channel device_ = {};
   double sample_rate_hz_ = 0.0;
   double drift_factor_ = 1.0;
+  double peak_mps2_ = 0.0;
   double offset_climb_v_ = 0.0;   ///< Per frame.
   SinCos hum_turn_ = {0.0, 1.0};  ///< Per frame.
   std::uint64_t hum_step_ = 0;    ///< The same in turns, in units of 2^-64.

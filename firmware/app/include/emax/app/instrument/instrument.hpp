@@ -108,6 +108,9 @@ class Instrument {
 
   /// @returns The table that parser and documentation share.
   static scpi::Table<Instrument> commands() noexcept;
+  /// @returns What each of them does, in their order: lines that end in a zero byte, one behind the
+  /// other. The table itself has none of them.
+  static const char* command_descriptions() noexcept;
 
   // What the commands are made of. Where words are answered, they say why nothing was done.
 

@@ -7,11 +7,22 @@
 #include <type_traits>
 
 #include "emax/app/measure/silent_channel.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/base/span.hpp"
 #include "emax/hal/analog_stream.hpp"
 #include "emax/identify/frame_sine_fit.hpp"
 
 namespace emax::app {
+
+/// @returns A fit whose volts are `scale` times as large.
+constexpr SineFitResult in_volts(SineFitResult fit, double scale) noexcept {
+  fit.cosine_v *= scale;
+  fit.sine_v *= scale;
+  fit.offset_v *= scale;
+  fit.amplitude_v *= scale;
+  fit.residual_std_v *= scale;
+  return fit;
+}
 
 /// Records both channels with one sine fit per line of the mains.
 ///
@@ -20,7 +31,7 @@ class SilenceRecord {
  public:
   static constexpr double kDuration_s = 0.2;
 
-  void start(const hal::StreamFormat& format) noexcept;
+  void start(const hal::StreamFormat& format, const FullScales& scales) noexcept;
   /// @returns The frames that the record takes in all.
   std::uint32_t frames() const noexcept { return 2 * half_; }
   void add(Span<const hal::Frame> frames) noexcept;
@@ -36,12 +47,14 @@ class SilenceRecord {
 
   using Lines = std::array<SineFitResult, kHumLines>;
 
-  SilentChannel evaluate(const Lines& lines, std::int64_t rise) const noexcept;
+  SilentChannel evaluate(const Lines& lines, std::int64_t rise,
+                         double volts_per_word) const noexcept;
 
   std::array<FrameSineFit, kHumLines> fits_;
   Rise rise_;
-  double volts_per_word_ = 0.0;
-  std::uint32_t half_ = 0;  // Frames of half a record.
+  double volts_per_word_ = 0.0;  // Of the reference, as all fits.
+  double device_scale_ = 0.0;    // Volts of the device's channel per volt of the reference's.
+  std::uint32_t half_ = 0;       // Frames of half a record.
   std::uint32_t frames_ = 0;
 };
 

@@ -30,7 +30,14 @@ class SweepWorkspace;
 /// rests, and takes repeats of whole periods, each with a fit on both channels. The first repeat
 /// also tells the level: where it is off, the drive is corrected by the ratio and the frequency
 /// begins anew. Overrange halves the drive and with it the level, for this frequency and, doubling
-/// again, for those after it.
+/// again, for those after it. The first look is at little drive, and at less where that is too
+/// much; a level that would take a channel beyond its full scale is lowered from then on.
+///
+/// The limit of acceleration does not hang on the reference alone. A step to more than 1.5 times
+/// the drive that the frequency before predicts is refused until a second look at half of the drive
+/// agrees with the first, and where the device's channel contradicts it; a reading that is no sine
+/// is no reason for more drive; and while nothing was seen at all, a tenth of the drive limit is
+/// the most.
 ///
 /// A run is three references: what it has found so far is in the results, what it needs to go on in
 /// the workspace. A new one on the same three goes on where the last one was. Nobody else may write
@@ -86,6 +93,8 @@ class Sweep {
   void end_repeat() noexcept;
   Reading reading_of(const SineFitResult& fit, const SilentChannel& silent) const noexcept;
   void judge_first(const Reading& reference, const Reading& device) noexcept;
+  double room_mps2(double reference_v, double device_v) const noexcept;
+  bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   void raise_drive() noexcept;
   double offset_change_v(double reference_v, double device_v) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;

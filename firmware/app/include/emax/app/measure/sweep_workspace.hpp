@@ -25,6 +25,9 @@ class SweepWorkspace {
  private:
   friend class Sweep;
 
+  /// Of the drive, beyond what the frequency before predicts, without a second look.
+  static constexpr double kPermittedStep = 1.5;
+
   enum class Activity : std::uint8_t { kSilence, kSettling, kMeasuring, kRampingDown };
 
   /// One frequency while it is measured.
@@ -33,14 +36,21 @@ class SweepWorkspace {
     double acceleration_mps2 = 0.0;
     std::uint32_t repeat_frames = 0;
     std::uint32_t tries = 0;
+    // The most drive that the frequency before lets expect; more is refused until it is confirmed.
+    double permitted_v = 0.0;
+    double unconfirmed_v = 0.0;  // V/(m/s^2) of the first look that asked for more.
     bool was_suspect = false;
     bool was_overrange = false;
     bool is_close = false;  // The level of this frequency has been seen.
   };
 
-  void begin(const hal::StreamFormat& format) noexcept;
+  void begin(const hal::StreamFormat& format, const FullScales& scales) noexcept;
+  SineFitResult device_fit() const noexcept {
+    return in_volts(fit_.device(), scales_.device_v / scales_.reference_v);
+  }
 
-  hal::StreamFormat format_;
+  hal::StreamFormat format_;  // The drive's full scale is that outside the front end.
+  FullScales scales_;
   DriveOscillator drive_;
   ChannelMonitor reference_monitor_;
   ChannelMonitor device_monitor_;
@@ -48,6 +58,8 @@ class SweepWorkspace {
   Complex last_ratio_;                   // Of the frequency before; zero if there was none.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
+  double level_room_mps2_ = 0.0;         // What takes a channel to full scale.
+  double device_v_per_v_ = 0.0;          // Device's volts per volt of drive, of the one before.
   double first_reference_offset_v_ = 0.0;
   double first_device_offset_v_ = 0.0;
   double reference_rest2_ = 0.0;  // Sums of the squares of the repeats' residuals.

@@ -42,6 +42,9 @@ struct CommandText {
   const char* unit = nullptr;  ///< "HZ"; null if it has none.
   double min = 0.0;
   double max = 0.0;
+  /// Not null where the setting of the next row, a number, is an optional second parameter and the
+  /// second field of the answer: its unit.
+  const char* next_unit = nullptr;
 };
 
 /// One setting: what boards keep of it, and its texts. Rows are constants that other tables are
@@ -99,6 +102,13 @@ struct SettingRow {
     row.command.parameters = parameters;
     row.command.description = description;
     row.command.unit = unit;
+    return row;
+  }
+  /// The next row is this setting's uncertainty: an optional second value of the option and of the
+  /// command, which keeps its own where it is left out.
+  constexpr SettingRow with_uncertainty(const char* unit) const noexcept {
+    SettingRow row = *this;
+    row.command.next_unit = unit;
     return row;
   }
   /// The console is narrower than the check.

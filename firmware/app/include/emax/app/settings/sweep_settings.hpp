@@ -42,18 +42,41 @@ struct SweepSettings {
   double repeat_s = 0.0;                 ///< Least duration of a repeat.
   std::uint32_t repeats = 0;             ///< 2 to kMaxRepeats.
   ReferenceCalibration reference;
-  double reference_gain = 0.0;             ///< Conditioner of the reference.
-  double device_gain = 0.0;                ///< Conditioner of the device under test.
-  double gain_expanded_percent = 0.0;      ///< Ratio of the two gains, k = 2.
-  double mounting_expanded_percent = 0.0;  ///< Mounting, transverse motion, temperature; k = 2.
-  double skew_s = 0.0;    ///< The device's channel samples later than the reference's.
-  double check_hz = 0.0;  ///< Measured before and after the sweep.
+  double reference_gain = 0.0;                   ///< Conditioner of the reference.
+  double reference_gain_expanded_percent = 0.0;  ///< All uncertainties: k = 2.
+  double device_gain = 0.0;                      ///< Conditioner of the device under test.
+  double device_gain_expanded_percent = 0.0;
+  /// True gain of the device's channel over that of the reference's, over the nominal one: what a
+  /// loopback finds. The measured ratio is divided by it.
+  double ratio_correction = 0.0;
+  double ratio_expanded_percent = 0.0;
+  double mounting_expanded_percent = 0.0;  ///< Mounting, transverse motion, temperature.
+  double skew_s = 0.0;  ///< The device's channel samples later than the reference's.
+  double skew_expanded_s = 0.0;
+  double clock_expanded_ppm = 0.0;          ///< Of the rate of sampling: of every frequency.
+  double crosstalk_expanded_percent = 0.0;  ///< Of either channel's voltage seen in the other.
+  double linearity_expanded_percent = 0.0;  ///< Change of a channel's gain up to full scale.
+  double check_hz = 0.0;                    ///< Measured before and after the sweep.
   /// What the device's data sheet says, V/(m/s^2), within a factor of kPlausibleFactor; 0 if it
   /// says nothing, and then channels that are swapped are told by their phase only.
   double expected_sensitivity = 0.0;
+  /// Volts outside the front end that are full scale of the converters; 0 for those at their pins.
+  double drive_full_scale_v = 0.0;
+  double reference_full_scale_v = 0.0;
+  double device_full_scale_v = 0.0;
 };
 
 static_assert(std::is_trivially_copyable_v<SweepSettings>);
+
+/// Full scales in volts outside the front end.
+struct FullScales {
+  double drive_v = 0.0;
+  double reference_v = 0.0;
+  double device_v = 0.0;
+};
+
+/// @returns Those of the settings, and of the stream where these say nothing.
+FullScales full_scales(const SweepSettings& settings, const hal::StreamFormat& format) noexcept;
 
 /// The sweep that the simulated bench is made for, at the 42 frequencies of the paper's Table 1. A
 /// function, because it takes a sixth of the flash that the constant would take.
