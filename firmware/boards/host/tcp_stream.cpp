@@ -8,7 +8,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <string>
-#include <string_view>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -16,8 +15,6 @@ namespace emax::host {
 
 namespace {
 
-constexpr std::string_view kBusy =
-    "emax: another client is connected; try again when it has gone\n";
 constexpr int kBacklog = 4;
 // A client that has closed its side and takes no answers for so long may be there for ever.
 constexpr std::chrono::seconds kPatience{1};
@@ -68,8 +65,6 @@ void TcpStream::accept_client() noexcept {
     return;
   }
   if (client_ >= 0) {
-    (void)::send(socket, kBusy.data(), kBusy.size(), MSG_NOSIGNAL);
-    ::shutdown(socket, SHUT_WR);
     ::close(socket);
     return;
   }
@@ -78,7 +73,6 @@ void TcpStream::accept_client() noexcept {
   client_ = socket;
   last_transfer_ = SteadyClock::now();
   input_ended_ = false;
-  line_is_open_ = false;
 }
 
 void TcpStream::drop_client() noexcept {
@@ -136,8 +130,6 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
   }
   const ssize_t count = ::recv(client_, bytes.data(), bytes.size(), 0);
   if (count > 0) {
-    const char last = bytes[static_cast<std::size_t>(count) - 1];
-    line_is_open_ = last != '\n' && last != '\r';
     last_transfer_ = SteadyClock::now();
     return static_cast<std::size_t>(count);
   }
@@ -148,11 +140,7 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
     return 0;
   }
   input_ended_ = true;
-  if (!line_is_open_) {
-    return 0;
-  }
-  bytes[0] = '\n';
-  return 1;
+  return 0;
 }
 
 std::size_t TcpStream::do_write(Span<const char> bytes) noexcept {

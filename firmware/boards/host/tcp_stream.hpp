@@ -14,9 +14,10 @@ namespace emax::host {
 
 /// Listens on 127.0.0.1 and serves one client after the other.
 ///
-/// A client that comes while another one is served is told so in one line and goes. Where the other
-/// one has closed its side already, the new one waits until it is done with, unless that one
-/// has read nothing of its answers for a second.
+/// A client that comes while another one is served is refused: its connection is closed without a
+/// word, which it would take for an answer. Where the other one has closed its side already, the
+/// new one waits until it is done with, unless that one has read nothing of its answers for a
+/// second. What a client has left without the end of a line is not executed.
 class TcpStream final : public ConsolePort {
  public:
   TcpStream() noexcept = default;
@@ -51,7 +52,6 @@ class TcpStream final : public ConsolePort {
   SteadyClock::time_point last_transfer_;
   bool was_dropped_ = false;
   bool input_ended_ = false;
-  bool line_is_open_ = false;
 };
 
 }  // namespace emax::host

@@ -53,23 +53,23 @@ constexpr SettingCase kSettings[] = {
     {"CALC:FILT:FREQ", "2 KHZ", "2000", "1000", "0"},
     {"CALC:FILT:GAIN", "1.5", "1.5", "AUTO", "-1"},
     {"CALC:FILT:GAIN", "TRACK", "TRAC", "AUTO", "MANUAL"},
-    {"CALC:ENER:TIME", "4ms", "0.0040000000000000001", "0.002", "0"},
+    {"CALC:ENER:TIME", "4ms", "4.0E-3", "2.0E-3", "0"},
     {"CALC:ENER:LIM", "2", "2", "AUTO", "0"},
     {"CALC:ENER:CRIT", "DIFFERENCE", "DIFF", "ISE", "BOTH"},
     {"CALC:ENER:METH", "pap", "PAP", "BEST", "WORST"},
-    {"CALC:ENER:STEP", "4US", "3.9999999999999998e-06", "1.9999999999999999e-06", "-1US"},
+    {"CALC:ENER:STEP", "4US", "4.0E-6", "2.0E-6", "-1US"},
     {"CALC:ENER:ITER", "31", "31", "30", "1001"},
     {"CALC:MCAR:TRI", "5000", "5000", "200000", "999"},
     {"CALC:MCAR:SEED", "1,2,3,4", "1,2,3,4", "123456789,345678901,567890123,789012345", "0,1,1,1"},
-    {"CALC:MCAR:PROB", "0.99", "0.98999999999999999", "0.94999999999999996", "1"},
+    {"CALC:MCAR:PROB", "0.99", "9.9E-1", "9.5E-1", "1"},
     {"CALC:MCAR:DIST", "NORM", "NORM", "BOX", "LOG"},
     {"CALC:MCAR:ADAP", "ON", "1", "0", "MAYBE"},
     {"CALC:MCAR:BIRG", "1", "1", "0", "MAYBE"},
     {"CALC:MCAR:GEN", "WH1982", "WH1982", "WH2006", "WH2007"},
-    {"SENS:REF:SENS", "0.2,1", "0.20000000000000001,1", "0.10000000000000001,0.5", "0.1,51"},
+    {"SENS:REF:SENS", "0.2,1", "2.0E-1,1", "1.0E-1,5.0E-1", "0.1,51"},
     {"SWE:FREQ", "100,1KHZ,5e3", "100,1000,5000", "200,1000,2500,4000,5500", "1000,100,200"},
     {"SWE:CYCL", "5", "5", "3", "0"},
-    {"SWE:SETT", "20 MS", "0.02", "0.01", "11"},
+    {"SWE:SETT", "20 MS", "2.0E-2", "1.0E-2", "11"},
     {"SOUR:LEV", "2", "2", "1", "0"},
     {"SOUR:LIM", "30 M/S2", "30", "20", "0"},
     {"SOUR:SLEW", "200000", "200000", "100000", "1"},
@@ -127,7 +127,7 @@ TEST(Instrument, TakesTheDefaultsOfTheSweepFromTheBoard) {
   i.sweep.reference.sensitivity[0] = 0.25;
   EXPECT_EQ(
       i.ask("SOUR:LEV DEF;LEV?;LEV? DEF;:SWE:SETT DEF;SETT?;CYCL DEF;CYCL?;:REF:SENS DEF;SENS?"),
-      "3;3;0.5;7;0.25,0.5");
+      "3;3;5.0E-1;7;2.5E-1,5.0E-1");
   EXPECT_EQ(i.ask("*RST;:SOUR:LEV?;:SWE:CYCL?"), "3;7");
 }
 
@@ -258,9 +258,7 @@ TEST(Instrument, NamesWhatIsMissing) {
 TEST(Instrument, AnswersWhatThePapersDeviceGives) {
   InstrumentBench i;
   ASSERT_EQ(i.ask(kPaperModel), "");
-  EXPECT_EQ(i.ask("CALC:MOD?"),
-            "1.0369999999999999,4073,0.31819999999999998,"
-            "0.0030000000000000001,6,0.00040000000000000002");
+  EXPECT_EQ(i.ask("CALC:MOD?"), "1.037,4073,3.182E-1,3.0E-3,6,4.0E-4");
   const std::vector<double> energy = i.numbers("CALC:ENER?");
   ASSERT_EQ(energy.size(), 5U);
   EXPECT_NEAR(energy[0], 0.005115251359876, 1e-15);
@@ -538,10 +536,10 @@ TEST(Instrument, KeepsSettingsInFourSlots) {
   ASSERT_EQ(i.ask("*RST;:CALC:FILT:ORD 3;*SAV 0"), "");
   i.switch_on();
   EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
-            "0.002;AUTO;1;123456789,345678901,567890123,789012345;10");
+            "2.0E-3;AUTO;1;123456789,345678901,567890123,789012345;10");
   ASSERT_EQ(i.ask("*RCL 3"), "");
   EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
-            "0.0030000000000000001;2;0.69999999999999996;9,8,7,6;10");
+            "3.0E-3;2;7.0E-1;9,8,7,6;10");
   EXPECT_EQ(i.ask("*RCL 0;:CALC:FILT:ORD?"), "3");
   const double energy = i.numbers(std::string(kPaperModel) + ";:CALC:ENER?")[0];
   ASSERT_EQ(i.ask("*RCL 3"), "");
@@ -617,7 +615,7 @@ TEST(Instrument, CountsErrorsUpToTheQueuesEnd) {
 TEST(Instrument, TakesCompoundLinesAndStaysAtTheNode) {
   InstrumentBench i;
   EXPECT_EQ(i.ask("CALC:ENER:TIME 3 MS;STEP 5us;TIME?;STEP?;*IDN?;ITER?;:CALC:FILT:ORD?"),
-            "0.0030000000000000001;5.0000000000000004e-06;emax,test,4711,0.1.0;30;10");
+            "3.0E-3;5.0E-6;emax,test,4711,0.1.0;30;10");
   EXPECT_EQ(i.ask("calculate:filter:order 7;frequency 2khz;:calc:filt:freq?"), "2000");
   EXPECT_EQ(i.errors(), "");
 }

@@ -61,7 +61,7 @@ void InstrumentCommands::progress(Instrument& i, Call& call) noexcept {
   call.answer().string(Span<const char>(name, length));
 }
 
-void InstrumentCommands::abort(Instrument& i, Call& /*call*/) noexcept { i.abort(); }
+void InstrumentCommands::abort(Instrument& i, Call& /*call*/) noexcept { i.abort_command(); }
 
 void InstrumentCommands::initiate_sweep(Instrument& i, Call& call) noexcept {
   report(i.initiate_sweep(), call);

@@ -423,11 +423,16 @@ void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
 
 void InstrumentCommands::random(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
+    if (i.was_aborted()) {
+      call.fail(ErrorCode::kExecutionError, "aborted");
+      return;
+    }
     call.answer().number(i.next_random());
     return;
   }
   std::int64_t count = 0;
   if (call.integer({1, kMaxRandom, 1}, count)) {
+    i.begin_answer();
     call.answer_items(static_cast<std::size_t>(count));
   }
 }

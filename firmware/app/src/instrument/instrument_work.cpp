@@ -102,6 +102,8 @@ ErrorWords Instrument::initiate_sweep() noexcept {
     return words_of(refusal, sequencer_);
   }
   change_device();
+  is_fit_kept_ = false;
+  warns_of_sweep_ = true;
   begin_work(scpi::kMeasuring | scpi::kSweeping);
   is_background_ = true;
   return {};
@@ -110,7 +112,7 @@ ErrorWords Instrument::initiate_sweep() noexcept {
 void Instrument::end_sweep() noexcept {
   const Refusal& failure = sequencer_.failure();
   if (!failure) {
-    is_fit_kept_ = false;
+    warns_of_sweep_ = false;
     return;
   }
   const ErrorWords words = words_of(failure, sequencer_);
@@ -158,7 +160,15 @@ void Instrument::show_fit_quality() noexcept {
   }
   const WlspFit& fit = sequencer_.evaluation().fit.result();
   const bool is_poor = fit.chi2 / fit.dof > reduced_chi_square_limit(fit.dof);
-  session_.status().questionable().set_condition(is_poor ? scpi::kQuestionableCalibration : 0);
+  const bool is_early =
+      sequencer_.origin() == Origin::kSweep && sequencer_.sweep().status != Status::kOk;
+  const int fault = is_early ? questionable_of(sequencer_.sweep().status) : 0;
+  const int poor = is_poor ? scpi::kQuestionableCalibration : 0;
+  session_.status().questionable().set_condition(static_cast<std::uint16_t>(fault | poor));
+  if (is_early && warns_of_sweep_) {
+    warns_of_sweep_ = false;
+    session_.status().report(ErrorCode::kDataCorruptOrStale, "fit of a sweep that ended early");
+  }
 }
 
 // Queries

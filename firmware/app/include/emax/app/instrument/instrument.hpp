@@ -81,6 +81,9 @@ class Instrument {
   /// Does a short piece of everything.
   void poll() noexcept;
 
+  /// Does its part of the console alone: what runs stays where it is.
+  void converse() noexcept;
+
   /// As ABORt: ends what runs, with the drive at zero. What is complete stays.
   void abort() noexcept;
 
@@ -89,6 +92,8 @@ class Instrument {
   bool is_sweeping() const noexcept { return sequencer_.job() == Job::kSweep; }
   /// @returns False if the next `poll()` has nothing to do but to look for bytes.
   bool is_busy() const noexcept { return is_working() || has_acted_; }
+  /// @returns True if the last call took or handed over characters, or executed something.
+  bool is_conversing() const noexcept { return has_acted_; }
   /// @returns True if all that came in was executed and all answers were handed over. Work in the
   /// background may go on.
   bool is_settled() const noexcept { return session_.is_idle(); }
@@ -128,6 +133,15 @@ class Instrument {
   ErrorWords take(const FrequencyResponse& points) noexcept;
   ErrorWords clear_points() noexcept;
 
+  /// ABORt: what runs ends, and so does an answer that is made as long as it is read.
+  void abort_command() noexcept {
+    was_aborted_ = true;
+    abort();
+  }
+  /// A query that goes on and on begins; then whether ABORt came since.
+  void begin_answer() noexcept { was_aborted_ = false; }
+  bool was_aborted() const noexcept { return was_aborted_; }
+
   /// *RST: as after power on, but for what the store holds.
   void reset() noexcept;
 
@@ -166,6 +180,8 @@ class Instrument {
 
  private:
   void follow_peer() noexcept;
+  void end_query() noexcept;
+  void clear_device() noexcept;
   void receive() noexcept;
   void execute() noexcept;
   void send() noexcept;
@@ -190,9 +206,10 @@ class Instrument {
   SweepSettings sweep_settings_;
   WichmannHill generator_;
   std::uint64_t deadlock_since_us_ = 0;
-  bool is_fit_kept_ = false;    // The fit of these points is in the store.
-  bool is_background_ = false;  // The job was begun by INITiate.
-  bool is_query_job_ = false;   // The query under way has begun the job that runs or has ended.
+  bool is_fit_kept_ = false;     // The fit of these points is in the store.
+  bool warns_of_sweep_ = false;  // A sweep that did not come to a good end; its fit is a warning.
+  bool is_background_ = false;   // The job was begun by INITiate.
+  bool is_query_job_ = false;    // The query under way has begun the job that runs or has ended.
   bool was_aborted_ = false;
   bool completes_operation_ = false;  // *OPC waits for the job.
   bool was_connected_ = false;

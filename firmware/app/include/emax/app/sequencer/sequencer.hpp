@@ -142,8 +142,8 @@ class Sequencer {
     return is_of_device() && evaluation_.holds(goal, settings);
   }
   Origin origin() const noexcept { return origin_; }
-  /// Of a sweep that runs, or has ended in any way, or was handed over. Measured points are there
-  /// also where the sweep has failed, and then they are not in `points()`.
+  /// Of a sweep that runs, or has ended in any way, or was handed over. What was measured before a
+  /// sweep failed is in `points()`, too.
   Origin points_origin() const noexcept { return points_origin_; }
   const SweepResults& sweep() const noexcept { return sweep_; }
   const EvaluationResults& evaluation() const noexcept { return evaluation_; }
