@@ -296,6 +296,8 @@ inline constexpr app::scpi::Command<Toy> kCommands[] = {
 
 static_assert(app::scpi::first_bad_row(kCommands) == sizeof kCommands / sizeof kCommands[0]);
 
+inline constexpr auto kRows = app::scpi::rows_of(kCommands);
+
 }  // namespace toy
 
 /// A toy and its session, and a peer that sends and reads as fast as it can.
@@ -312,7 +314,7 @@ class ToyConsole {
     return count;
   }
 
-  bool step() { return session.step(toy, toy::kCommands); }
+  bool step() { return session.step(toy, toy::kRows.rows); }
 
   /// Steps until nothing more happens, or `most` times; nothing is read.
   int run(int most = 100000) {

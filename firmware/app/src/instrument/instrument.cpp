@@ -88,9 +88,9 @@ void Instrument::receive() noexcept {
 }
 
 void Instrument::execute() noexcept {
-  bool acted = session_.step(*this, commands());
+  bool acted = session_.step(*this, rows());
   for (int i = 0; acted && session_.is_answering() && i < kItemsPerPoll; ++i) {
-    (void)session_.step(*this, commands());
+    (void)session_.step(*this, rows());
   }
   has_acted_ = has_acted_ || acted;
 }
@@ -119,6 +119,7 @@ void Instrument::reset() noexcept {
   abort();
   sequencer_.reset();
   change_device();
+  common_percent_ = 0.0;
   reset_settings();
 }
 

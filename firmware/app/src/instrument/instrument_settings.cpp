@@ -195,6 +195,10 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
     seed(i, call);
     return;
   }
+  if (field.kind == SettingKind::kNumbers || field.kind == SettingKind::kMoreNumbers) {
+    trend_times(i, call);
+    return;
+  }
   SettingValue value;
   if (!SettingCall(call, command, field, &i.settings())
            .take(number_in(field, &kDefaultSettings), value)) {

@@ -13,11 +13,6 @@ using scpi::ErrorCode;
 constexpr ErrorWords kRunning = {ErrorCode::kInitIgnored, "running: ABOR or *WAI first"};
 constexpr ErrorWords kAborted = {ErrorCode::kExecutionError, "aborted"};
 
-/// Of a report: twice the longest that the tests have.
-struct Text {
-  char characters[std::size_t{24} * 1024];
-};
-
 /// Text into memory.
 class MemorySink final : public TextSink {
  public:
@@ -253,9 +248,24 @@ Span<const char> Instrument::render_report() noexcept {
   const Measurement measurement = {sequencer_.sweep(), ports_.analog.format(), board_.simulated};
   ReportContext context;
   context.measurement = sequencer_.origin() == Origin::kSweep ? &measurement : nullptr;
-  MemorySink sink{Span<char>(sequencer_.borrow<Text>().characters)};
+  MemorySink sink(sequencer_.borrow_all());
   TextWriter out(sink);
   write_report(sequencer_.evaluation(), context, out);
+  return sink.text();
+}
+
+Span<const char> Instrument::render_json() noexcept {
+  const Measurement measurement = {sequencer_.sweep(), ports_.analog.format(), board_.simulated};
+  const bool is_swept = sequencer_.points_origin() == Origin::kSweep;
+  const auto holds = [this](Goal goal) noexcept { return sequencer_.holds(goal, settings_); };
+  const InstrumentState state = {sequencer_.evaluation(),   is_swept ? &measurement : nullptr,
+                                 sequencer_.points(),       holds(Goal::kModel),
+                                 holds(Goal::kEnergy),      holds(Goal::kBand),
+                                 holds(Goal::kUncertainty), holds(Goal::kMonteCarlo),
+                                 holds(Goal::kTrend)};
+  MemorySink sink(sequencer_.borrow_all());
+  TextWriter out(sink);
+  write_instrument_json(state, out);
   return sink.text();
 }
 

@@ -195,6 +195,11 @@ Response& Response::piece(Span<const char> characters) noexcept {
   return *this;
 }
 
+Response& Response::piece(const char* characters) noexcept {
+  put(characters, length_of(characters));
+  return *this;
+}
+
 Span<const char> Response::pending() const noexcept {
   if (begin_ == end_) {
     return block_;
@@ -311,7 +316,9 @@ void Response::put_quoted(const char* text) noexcept {
 }
 
 void Response::separate() noexcept {
-  if (has_field_) {
+  if (joins_) {
+    joins_ = false;
+  } else if (has_field_) {
     put(",", 1);
   } else if (open_) {
     put(";", 1);

@@ -24,6 +24,14 @@ void Sequencer::take(const FrequencyResponse& points) noexcept {
   origin_ = Origin::kTable;
 }
 
+void Sequencer::take(const SweepResults& sweep) noexcept {
+  sweep_ = sweep;
+  (void)sweep_.copy_to(points_);
+  has_identification_ = false;
+  points_origin_ = Origin::kSweep;
+  origin_ = Origin::kSweep;
+}
+
 void Sequencer::give_damping(double damping) noexcept {
   evaluation_.clear();
   evaluation_.fit.give_damping(damping);

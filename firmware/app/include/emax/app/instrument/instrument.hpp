@@ -109,8 +109,10 @@ class Instrument {
   /// Lends memory for their polynomials: as `Evaluation::lend_trial_pieces()`.
   void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { sequencer_.lend_trial_pieces(pieces); }
 
-  /// @returns The table that parser and documentation share.
-  static scpi::Table<Instrument> commands() noexcept;
+  /// @returns All commands with their texts, for documentation.
+  static Span<const scpi::Command<Instrument>> commands() noexcept;
+  /// @returns The same for the parser.
+  static scpi::Table<Instrument> rows() noexcept;
 
   // What the commands are made of. Where words are answered, they say why nothing was done.
 
@@ -174,6 +176,12 @@ class Instrument {
   ///
   /// @returns Nothing if the report is longer than the memory. Valid until something runs.
   Span<const char> render_report() noexcept;
+  /// The same of FETCh:JSON?.
+  Span<const char> render_json() noexcept;
+
+  /// The common part of points from elsewhere, expanded, in percent.
+  double common_percent() const noexcept { return common_percent_; }
+  void set_common_percent(double percent) noexcept { common_percent_ = percent; }
 
   /// Bit of STATus:OPERation: an evaluation or a fixed point runs.
   static constexpr std::uint16_t kComputing = 1u << 8;
@@ -206,6 +214,7 @@ class Instrument {
   SweepSettings sweep_settings_;
   WichmannHill generator_;
   std::uint64_t deadlock_since_us_ = 0;
+  double common_percent_ = 0.0;
   bool is_fit_kept_ = false;     // The fit of these points is in the store.
   bool warns_of_sweep_ = false;  // A sweep that did not come to a good end; its fit is a warning.
   bool is_background_ = false;   // The job was begun by INITiate.

@@ -48,6 +48,9 @@ class Response {
   Response& block_header(std::size_t length) noexcept;
   /// Characters without a separator before them.
   Response& piece(Span<const char> characters) noexcept;
+  Response& piece(const char* characters) noexcept;
+  /// The next field follows without a separator.
+  void join() noexcept { joins_ = true; }
 
   /// @returns The characters that wait, as far as they are in one piece; empty if none do.
   Span<const char> pending() const noexcept;
@@ -98,6 +101,7 @@ class Response {
   bool has_field_ = false;
   bool had_field_ = false;
   bool had_block_ = false;
+  bool joins_ = false;
   bool fits_ = true;
   bool line_is_open_ = false;  ///< The last character that was sent is no line feed.
 };
