@@ -121,6 +121,17 @@ class ScpiReport(ProgramTest):
         self.expect_report(["--model", MODEL, "--trials", "2000", "--time", "0.003", "--order", "7"], [],
                            f"CALC:MOD {MODEL}\nCALC:MCAR:TRI 2000\nCALC:ENER:TIME 3ms;:CALC:FILT:ORD 7\nCALC:REP?\n")
 
+    def test_with_labels(self) -> None:
+        labels = {"device": "Piezo A", "serial": "47\"11", "operator": "it's me", "date": "today", "note": "none"}
+        arguments = [word for name, text in labels.items() for word in ("--" + name, text)]
+        strings = ",".join('"' + text.replace('"', '""') + '"' for text in labels.values())
+        self.expect_report(["--model", MODEL, "--trials", "1000", *arguments], [],
+                           f"CALC:MOD {MODEL};:CALC:MCAR:TRI 1000;:CALC:REP? {strings}\n")
+        self.expect_report(["--model", MODEL, "--trials", "1000", "--serial", "4711"], [],
+                           f"CALC:MOD {MODEL};:CALC:MCAR:TRI 1000;:CALC:REP? '','4711'\n")
+        errors = run(text=b"CALC:REP? 4711;:SYST:ERR?\nCALC:REP? 'a','b','c','d','e','f'\nSYST:ERR:CODE:ALL?\n").stdout
+        self.assertEqual(errors, b"-128,-108\n")
+
     def test_of_the_papers_method(self) -> None:
         self.expect_report(["--model", MODEL, "--trials", "1000", "--method", "paper"], [],
                            f"CALC:MOD {MODEL}\nCALC:MCAR:TRI 1000\nCALC:ENER:METH PAP\nINIT:REP\n*WAI\nCALC:REP?\n")
@@ -430,6 +441,20 @@ class ScpiTcp(ProgramTest):
             self.assertLess(time.monotonic() - begin, 12.8, "a tenth of that")
             self.assertEqual(client.ask("STAT:OPER:COND?"), "24")
             client.close()
+
+    def test_addresses(self) -> None:
+        for address, listens in (("127.0.0.2:0", "127.0.0.2"), ("0.0.0.0:0", "0.0.0.0"), ("127.0.0.1:0", "127.0.0.1")):
+            process = subprocess.Popen([PROGRAM, "scpi", "--tcp", address], stdin=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE, preexec_fn=restore_signals)
+            self.addCleanup(process.communicate)
+            self.addCleanup(process.kill)
+            found = re.fullmatch(r"emax: listening on ([0-9.]+):(\d+)\n", process.stderr.readline().decode())
+            self.assertEqual(found[1], listens)
+            with socket.create_connection((listens, int(found[2])), timeout=PATIENCE) as peer:
+                peer.sendall(b"SYST:VERS?\n")
+                self.assertEqual(peer.makefile("rb").readline(), b"1999.0\n")
+        for wrong in ("localhost:0", "1.2.3:0", ":0", "127.0.0.1:", "127.0.0.1:65536", "256.0.0.1:5"):
+            self.refuse(["scpi", "--tcp", wrong], "--tcp: ", "expected")
 
     def test_a_port_that_is_taken(self) -> None:
         with Server() as server:

@@ -164,10 +164,11 @@ class ScpiJob final {
 
 desk::Problem run_on_tcp(const desk::ScpiOptions& options) {
   TcpStream port;
-  if (desk::Problem problem = port.listen(options.port)) {
+  if (desk::Problem problem = port.listen(options.address, options.port)) {
     return problem;
   }
-  std::fprintf(stderr, "emax: listening on 127.0.0.1:%u\n", unsigned{port.port()});
+  std::fprintf(stderr, "emax: listening on %s:%u\n", options.address.c_str(),
+               unsigned{port.port()});
   return ScpiJob(options, port).run(options);
 }
 
@@ -201,7 +202,7 @@ desk::Problem run_scpi(Span<const std::string_view> arguments) {
 
 std::string help_on_scpi() {
   return R"(usage: emax scpi [options]
-       emax scpi --tcp PORT [options]
+       emax scpi --tcp [ADDRESS:]PORT [options]
        emax scpi --commands
 
 The instrument's console: SCPI commands, one message a line, executed in order;

@@ -11,6 +11,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "desk/cli/console.hpp"
+
 namespace emax::host {
 
 namespace {
@@ -40,11 +42,14 @@ TcpStream::~TcpStream() {
   }
 }
 
-desk::Problem TcpStream::listen(std::uint16_t port) {
+desk::Problem TcpStream::listen(const std::string& host, std::uint16_t port) {
   sockaddr_in address = {};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) {
+    return desk::bad_input("--tcp: " + desk::printable(host) +
+                           " is no address; expected one of IPv4 in numbers, such as 127.0.0.1");
+  }
   socklen_t length = sizeof address;
   const int yes = 1;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -52,7 +57,7 @@ desk::Problem TcpStream::listen(std::uint16_t port) {
   if (listener_ < 0 || ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
       ::bind(listener_, generic, length) != 0 || ::listen(listener_, kBacklog) != 0 ||
       ::getsockname(listener_, generic, &length) != 0) {
-    return desk::bad_input("--tcp: port " + std::to_string(port) + " of 127.0.0.1: " +
+    return desk::bad_input("--tcp: port " + std::to_string(port) + " of " + host + ": " +
                            std::strerror(errno) + "; expected a free port, or 0 for any");
   }
   port_ = ntohs(address.sin_port);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "emax/base/span.hpp"
 
@@ -12,7 +13,7 @@
 
 namespace emax::host {
 
-/// Listens on 127.0.0.1 and serves one client after the other.
+/// Listens on an address of this machine and serves one client after the other.
 ///
 /// A client that comes while another one is served is refused: its connection is closed without a
 /// word, which it would take for an answer. Where the other one has closed its side already, the
@@ -23,9 +24,10 @@ class TcpStream final : public ConsolePort {
   TcpStream() noexcept = default;
   ~TcpStream();
 
-  /// @param[in] port 0 for one that the system chooses.
+  /// @param[in] address Of IPv4, in numbers: 127.0.0.1 for this machine alone, 0.0.0.0 for all.
+  /// @param[in] port    0 for one that the system chooses.
   /// @returns Why the port cannot be had, if so.
-  desk::Problem listen(std::uint16_t port);
+  desk::Problem listen(const std::string& address, std::uint16_t port);
   std::uint16_t port() const noexcept { return port_; }
 
   void wait(std::chrono::microseconds time, Wishes wishes) override;

@@ -133,8 +133,7 @@ struct InstrumentCommands {
   static void trend_times(Instrument& i, Call& call) noexcept;
   static bool take_trend(Instrument& i, Call& call) noexcept;
   static void report_text(Instrument& i, Call& call) noexcept;
-  static void answer_text(Instrument& i, Call& call,
-                          Span<const char> (Instrument::*render)() noexcept) noexcept;
+  static void answer_text(Span<const char> text, Call& call) noexcept;
 
   // Diagnosis
 

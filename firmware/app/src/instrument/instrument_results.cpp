@@ -509,23 +509,68 @@ bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
   return !call.failed();
 }
 
-void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
-  if (i.provide(call, Goal::kReport)) {
-    answer_text(i, call, &Instrument::render_report);
+namespace {
+
+/// What a report is headed with: a view of the message.
+struct GivenLabels {
+  Span<const char> text[5];
+  std::size_t count = 0;
+};
+
+bool take_labels(scpi::Call& call, GivenLabels& labels) noexcept {
+  while (call.has_more()) {
+    if (!call.string(labels.text[labels.count])) {
+      return false;
+    }
+    ++labels.count;
   }
+  return true;
 }
 
-void InstrumentCommands::fetch_json(Instrument& i, Call& call) noexcept {
-  answer_text(i, call, &Instrument::render_json);
+/// Puts a label with a zero behind it to the front of the memory; doubled quotes are one.
+const char* keep_label(Span<const char> text, Span<char>& memory) noexcept {
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    memory[size++] = text[k];
+    const bool is_quote = text[k] == '"' || text[k] == '\'';
+    k += is_quote && k + 1 < text.size() && text[k + 1] == text[k] ? 1U : 0U;
+  }
+  memory[size] = '\0';
+  const char* const label = memory.data();
+  memory = memory.from(size + 1);
+  return size > 0 ? label : nullptr;
 }
 
-void InstrumentCommands::answer_text(Instrument& i, Call& call,
-                                     Span<const char> (Instrument::*render)() noexcept) noexcept {
+}  // namespace
+
+void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
+  GivenLabels given;
+  if (!take_labels(call, given) || !i.provide(call, Goal::kReport)) {
+    return;
+  }
   if (i.is_working()) {
     call.wait();
     return;
   }
-  const Span<const char> text = (i.*render)();
+  Span<char> memory = i.sequencer().borrow_all();
+  Labels labels;
+  const char** const all[] = {&labels.device, &labels.serial, &labels.operated_by, &labels.date,
+                              &labels.note};
+  for (std::size_t k = 0; k < given.count; ++k) {
+    *all[k] = keep_label(given.text[k], memory);
+  }
+  answer_text(i.render_report(labels, memory), call);
+}
+
+void InstrumentCommands::fetch_json(Instrument& i, Call& call) noexcept {
+  if (i.is_working()) {
+    call.wait();
+    return;
+  }
+  answer_text(i.render_json(), call);
+}
+
+void InstrumentCommands::answer_text(Span<const char> text, Call& call) noexcept {
   if (text.empty()) {
     call.fail(ErrorCode::kOutOfMemory, "the text is too long");
     return;

@@ -109,7 +109,7 @@ inline constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
     {"CALCulate:UNCertainty", kQuery, "", "Of E, by JCGM 101 with normal parameters: u,U,low,high,shortest_low,shortest_high,redrawn", kPlain, C::uncertainty},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
-    {"CALCulate:REPort", kQuery, "", "The text of emax report, as a block", kPlain, C::report_text},
+    {"CALCulate:REPort", kQuery, "[<device>,<serial>,<operator>,<date>,<note>]", "The text of emax report, as a block; labels are strings", kPlain, C::report_text},
 
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},

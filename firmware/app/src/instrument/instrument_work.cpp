@@ -244,11 +244,12 @@ bool Instrument::can_begin(Call& call) noexcept {
   return true;
 }
 
-Span<const char> Instrument::render_report() noexcept {
+Span<const char> Instrument::render_report(const Labels& labels, Span<char> memory) noexcept {
   const Measurement measurement = {sequencer_.sweep(), ports_.analog.format(), board_.simulated};
   ReportContext context;
+  context.labels = labels;
   context.measurement = sequencer_.origin() == Origin::kSweep ? &measurement : nullptr;
-  MemorySink sink(sequencer_.borrow_all());
+  MemorySink sink(memory);
   TextWriter out(sink);
   write_report(sequencer_.evaluation(), context, out);
   return sink.text();

@@ -584,15 +584,46 @@ void write_sweep(const Measurement* measurement, JsonWriter& json) noexcept {
   json.close();
 }
 
-using WriteResults = void (*)(const EvaluationResults& results, JsonWriter& json);
+void write_error_system(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (!state.has_model) {
+    json.null("filter");
+    json.null("impulse_response");
+    return;
+  }
+  write_filter(state.evaluation, json);
+  write_impulse_response(state.evaluation, json);
+}
 
-/// A result that may not be there yet.
-void write_if(bool exists, const char* name, WriteResults write, const EvaluationResults& results,
-              JsonWriter& json) noexcept {
-  if (exists) {
-    write(results, json);
+void write_energies(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (state.has_energy) {
+    write_energy(state.evaluation, json);
   } else {
-    json.null(name);
+    json.null("energy");
+  }
+  if (state.has_band) {
+    write_band(state.evaluation, json);
+    write_ideal(state.evaluation, json);
+  } else {
+    json.null("band");
+    json.null("ideal");
+  }
+}
+
+void write_trials(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (state.has_uncertainty) {
+    write_uncertainty(state.evaluation, json);
+  } else {
+    json.null("uncertainty");
+  }
+  if (state.has_trials) {
+    write_monte_carlo(state.evaluation, json);
+  } else {
+    json.null("monte_carlo");
+  }
+  if (state.has_trend) {
+    write_trend(state.evaluation, json);
+  } else {
+    json.null("trend");
   }
 }
 
@@ -601,26 +632,20 @@ void write_if(bool exists, const char* name, WriteResults write, const Evaluatio
 void write_instrument_json(const InstrumentState& state, TextWriter& out) noexcept {
   ReportContext context;
   context.measurement = state.measurement;
-  const EvaluationResults& results = state.evaluation;
   JsonWriter json(out);
   json.open(nullptr);
   write_head(context.labels, json);
   write_points(state, json);
   write_sweep(state.measurement, json);
   if (state.has_model) {
-    write_model(results, context, json);
+    write_model(state.evaluation, context, json);
   } else {
     json.null("model");
   }
   write_bench(state.measurement, nullptr, json);
-  write_if(state.has_model, "filter", write_filter, results, json);
-  write_if(state.has_model, "impulse_response", write_impulse_response, results, json);
-  write_if(state.has_energy, "energy", write_energy, results, json);
-  write_if(state.has_band, "band", write_band, results, json);
-  write_if(state.has_band, "ideal", write_ideal, results, json);
-  write_if(state.has_uncertainty, "uncertainty", write_uncertainty, results, json);
-  write_if(state.has_trials, "monte_carlo", write_monte_carlo, results, json);
-  write_if(state.has_trend, "trend", write_trend, results, json);
+  write_error_system(state, json);
+  write_energies(state, json);
+  write_trials(state, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();

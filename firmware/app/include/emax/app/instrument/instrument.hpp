@@ -8,6 +8,7 @@
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/instrument/error_words.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report_context.hpp"
 #include "emax/app/scpi/call.hpp"
 #include "emax/app/scpi/command.hpp"
 #include "emax/app/scpi/session.hpp"
@@ -175,7 +176,9 @@ class Instrument {
   /// While nothing runs.
   ///
   /// @returns Nothing if the report is longer than the memory. Valid until something runs.
-  Span<const char> render_report() noexcept;
+  ///
+  /// @param[in] memory Of the sequencer; `labels` may be in front of it.
+  Span<const char> render_report(const Labels& labels, Span<char> memory) noexcept;
   /// The same of FETCh:JSON?.
   Span<const char> render_json() noexcept;
 
