@@ -154,6 +154,19 @@ class Interruptions(ClientTest):
         self.assertEqual(self.visa.query("CALC:ENER?"), energy, "what was there stays")
 
 
+class FrontEnd(ClientTest):
+    """`emax report --instrument` has the instrument measure and evaluates on the PC: the same results, byte for byte."""
+
+    def setUp(self):
+        self.instrument = BoardImage(IMAGE[1:], IMAGE[0]) if IMAGE else HostProgram(PROGRAM)
+        self.addCleanup(self.instrument.close)
+
+    def test_report(self):
+        options = ["--trials", TRIALS, "--trend", "none", "--level", "2", "--json"]
+        got = self.report("--instrument", f"127.0.0.1:{self.instrument.port}", *options)
+        self.assertEqual(got, self.report(*options))
+
+
 def main() -> None:
     global PROGRAM, IMAGE
     PROGRAM, rest = os.path.abspath(sys.argv[1]), sys.argv[2:]

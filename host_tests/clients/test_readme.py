@@ -113,15 +113,22 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual(command, f"python3 example.py {ADDRESS}")
         scripts = re.findall(r"^```python\n((?:.*\n)*?)```$", README, re.MULTILINE)
         self.assertEqual(len(scripts), 1)
-        self.assertEqual(scripts[0].count("\n"), 10, "ten lines")
-        instrument = HostProgram(PROGRAM)
+        self.assertEqual(scripts[0].count("\n"), 11, "eleven lines")
+        result = self.run_script(scripts[0])
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, printed, ""))
+        # A fault ends it at once, and not with the patience of the client.
+        result = self.run_script(scripts[0], "--bench-fault", "unplugged-device@3")
+        self.assertEqual((result.returncode, result.stdout), (1, printed.splitlines()[0] + "\n"))
+        self.assertRegex(result.stderr, r'^-240,"Hardware error;no device: [^"]*"\n$')
+
+    def run_script(self, script: str, *options: str) -> subprocess.CompletedProcess:
+        instrument = HostProgram(PROGRAM, *options)
         self.addCleanup(instrument.close)
-        script = self.directory / "example.py"
-        script.write_text(scripts[0])
+        path = self.directory / "example.py"
+        path.write_text(script)
         address = ADDRESS.replace("5025", str(instrument.port))
-        result = subprocess.run([sys.executable, "-W", "ignore", script, address], check=True,
-                                stdout=subprocess.PIPE, timeout=100)
-        self.assertEqual(result.stdout.decode(), printed)
+        return subprocess.run([sys.executable, "-W", "ignore", path, address], check=False,
+                              capture_output=True, text=True, timeout=50)
 
 
 if __name__ == "__main__":

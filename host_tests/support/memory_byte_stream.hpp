@@ -25,6 +25,24 @@ class MemoryByteStream final : public hal::ByteStream {
         std::min<std::uint64_t>(lost, std::numeric_limits<std::uint32_t>::max()));
   }
 
+  /// The same for what finds room.
+  ///
+  /// @returns How many bytes that are.
+  std::size_t send_what_fits(const std::string& bytes) {
+    const std::size_t count = std::min(bytes.size(), room_ - input_.size());
+    input_.append(bytes, 0, count);
+    return count;
+  }
+
+  /// The line has a break: what came before it is gone.
+  void send_break() {
+    input_.clear();
+    has_break_ = true;
+  }
+
+  /// From here on a pipe: who reads is not who sends.
+  void wait_for_reader() { waits_for_reader_ = true; }
+
   /// The peer takes up to `count` of the bytes that were written.
   std::string receive(std::size_t count = std::string::npos) {
     const std::string taken = output_.substr(0, count);
@@ -57,11 +75,21 @@ class MemoryByteStream final : public hal::ByteStream {
     return lost;
   }
 
+  bool do_take_break() noexcept override {
+    const bool has_break = has_break_;
+    has_break_ = false;
+    return has_break;
+  }
+
+  bool do_waits_for_reader() const noexcept override { return waits_for_reader_; }
+
   std::size_t room_;
   std::string input_;
   std::string output_;
   std::uint32_t lost_ = 0;
   bool connected_ = true;
+  bool has_break_ = false;
+  bool waits_for_reader_ = false;
 };
 
 }  // namespace emax::test

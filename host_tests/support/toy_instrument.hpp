@@ -25,7 +25,7 @@ struct Toy {
   bool output = false;
   double frequencies_hz[8] = {};
   std::size_t frequency_count = 0;
-  char text[64] = {};  ///< Of the last string or block.
+  char text[64] = {};  ///< Of the last string.
   std::size_t text_length = 0;
   int stored = 0;  ///< How often a setting was said to have a new value.
   std::string log;
@@ -179,9 +179,9 @@ inline void block(Toy& toy, Call& call) noexcept {
     call.answer().block(Span<const char>(kReport, sizeof kReport - 1));
     return;
   }
-  Span<const char> bytes;
-  if (call.block(bytes)) {
-    keep(toy, bytes);
+  Span<const char> text;
+  if (call.string(text)) {
+    keep(toy, text);
   }
 }
 
@@ -296,6 +296,8 @@ inline constexpr app::scpi::Command<Toy> kCommands[] = {
 
 static_assert(app::scpi::first_bad_row(kCommands) == sizeof kCommands / sizeof kCommands[0]);
 
+inline constexpr auto kRows = app::scpi::rows_of(kCommands);
+
 }  // namespace toy
 
 /// A toy and its session, and a peer that sends and reads as fast as it can.
@@ -312,7 +314,7 @@ class ToyConsole {
     return count;
   }
 
-  bool step() { return session.step(toy, toy::kCommands); }
+  bool step() { return session.step(toy, toy::kRows.rows); }
 
   /// Steps until nothing more happens, or `most` times; nothing is read.
   int run(int most = 100000) {

@@ -1,6 +1,7 @@
 // `emax scpi`: the loop around the instrument.
 #include "scpi_command.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -41,7 +42,7 @@ class Pacer final {
   // pace: seconds of the bench per second; 0 for as fast as it goes.
   Pacer(double pace, const sim::SimBench& bench) noexcept : pace_(pace), bench_(bench) {}
 
-  // The time until the next block is due.
+  // The time until the next block is due; 0 if it is.
   Microseconds until_due(bool is_sweeping) noexcept {
     if (pace_ == 0.0 || !is_sweeping) {
       runs_ = false;
@@ -55,7 +56,7 @@ class Pacer final {
     const auto frames = static_cast<double>(bench_.clock_frames() - start_frames_);
     const std::chrono::duration<double> bench_time(frames / bench_.format().sample_rate_hz);
     const auto left = bench_time / pace_ - (SteadyClock::now() - start_);
-    return std::chrono::duration_cast<Microseconds>(left);
+    return std::max(std::chrono::duration_cast<Microseconds>(left), Microseconds{0});
   }
 
  private:
@@ -105,7 +106,12 @@ class ScpiJob final {
     }
     instrument.start();
     while (!desk::stop_requested()) {
-      instrument.poll();
+      const Microseconds until_due = pacer_.until_due(instrument.is_sweeping());
+      if (until_due > Microseconds{0}) {
+        instrument.converse();  // The bench has time, the peer has not.
+      } else {
+        instrument.poll();
+      }
       if (!goes_on(instrument)) {
         instrument.abort();
         return {};
@@ -129,8 +135,8 @@ class ScpiJob final {
     const ConsolePort::Wishes wishes = {instrument.takes_input(), instrument.wants_to_write()};
     const Microseconds until_due = pacer_.until_due(instrument.is_sweeping());
     const bool is_paced = until_due > Microseconds{0};
-    const bool is_resting = is_paced || !instrument.is_busy();
-    const Microseconds longest = is_paced && until_due < kLongestSleep ? until_due : kLongestSleep;
+    const bool is_resting = !instrument.is_conversing() && (is_paced || !instrument.is_working());
+    const Microseconds longest = is_paced ? std::min(until_due, kLongestSleep) : kLongestSleep;
     port_.wait(is_resting ? longest : Microseconds{0}, wishes);
   }
 
@@ -158,10 +164,11 @@ class ScpiJob final {
 
 desk::Problem run_on_tcp(const desk::ScpiOptions& options) {
   TcpStream port;
-  if (desk::Problem problem = port.listen(options.port)) {
+  if (desk::Problem problem = port.listen(options.address, options.port)) {
     return problem;
   }
-  std::fprintf(stderr, "emax: listening on 127.0.0.1:%u\n", unsigned{port.port()});
+  std::fprintf(stderr, "emax: listening on %s:%u\n", options.address.c_str(),
+               unsigned{port.port()});
   return ScpiJob(options, port).run(options);
 }
 
@@ -195,7 +202,7 @@ desk::Problem run_scpi(Span<const std::string_view> arguments) {
 
 std::string help_on_scpi() {
   return R"(usage: emax scpi [options]
-       emax scpi --tcp PORT [options]
+       emax scpi --tcp [ADDRESS:]PORT [options]
        emax scpi --commands
 
 The instrument's console: SCPI commands, one message a line, executed in order;

@@ -31,6 +31,7 @@ class StdioStream final : public ConsolePort {
   std::size_t do_write(Span<const char> bytes) noexcept override;
   bool do_connected() const noexcept override { return error_ == 0; }
   std::uint32_t do_take_lost_count() noexcept override { return 0; }
+  bool do_waits_for_reader() const noexcept override { return true; }
 
   int error_ = 0;
   bool input_ended_ = false;

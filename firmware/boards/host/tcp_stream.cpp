@@ -8,16 +8,15 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <string>
-#include <string_view>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include "desk/cli/console.hpp"
 
 namespace emax::host {
 
 namespace {
 
-constexpr std::string_view kBusy =
-    "emax: another client is connected; try again when it has gone\n";
 constexpr int kBacklog = 4;
 // A client that has closed its side and takes no answers for so long may be there for ever.
 constexpr std::chrono::seconds kPatience{1};
@@ -43,11 +42,14 @@ TcpStream::~TcpStream() {
   }
 }
 
-desk::Problem TcpStream::listen(std::uint16_t port) {
+desk::Problem TcpStream::listen(const std::string& host, std::uint16_t port) {
   sockaddr_in address = {};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) {
+    return desk::bad_input("--tcp: " + desk::printable(host) +
+                           " is no address; expected one of IPv4 in numbers, such as 127.0.0.1");
+  }
   socklen_t length = sizeof address;
   const int yes = 1;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -55,7 +57,7 @@ desk::Problem TcpStream::listen(std::uint16_t port) {
   if (listener_ < 0 || ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
       ::bind(listener_, generic, length) != 0 || ::listen(listener_, kBacklog) != 0 ||
       ::getsockname(listener_, generic, &length) != 0) {
-    return desk::bad_input("--tcp: port " + std::to_string(port) + " of 127.0.0.1: " +
+    return desk::bad_input("--tcp: port " + std::to_string(port) + " of " + host + ": " +
                            std::strerror(errno) + "; expected a free port, or 0 for any");
   }
   port_ = ntohs(address.sin_port);
@@ -68,8 +70,6 @@ void TcpStream::accept_client() noexcept {
     return;
   }
   if (client_ >= 0) {
-    (void)::send(socket, kBusy.data(), kBusy.size(), MSG_NOSIGNAL);
-    ::shutdown(socket, SHUT_WR);
     ::close(socket);
     return;
   }
@@ -78,7 +78,6 @@ void TcpStream::accept_client() noexcept {
   client_ = socket;
   last_transfer_ = SteadyClock::now();
   input_ended_ = false;
-  line_is_open_ = false;
 }
 
 void TcpStream::drop_client() noexcept {
@@ -136,8 +135,6 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
   }
   const ssize_t count = ::recv(client_, bytes.data(), bytes.size(), 0);
   if (count > 0) {
-    const char last = bytes[static_cast<std::size_t>(count) - 1];
-    line_is_open_ = last != '\n' && last != '\r';
     last_transfer_ = SteadyClock::now();
     return static_cast<std::size_t>(count);
   }
@@ -148,11 +145,7 @@ std::size_t TcpStream::do_read(Span<char> bytes) noexcept {
     return 0;
   }
   input_ended_ = true;
-  if (!line_is_open_) {
-    return 0;
-  }
-  bytes[0] = '\n';
-  return 1;
+  return 0;
 }
 
 std::size_t TcpStream::do_write(Span<const char> bytes) noexcept {

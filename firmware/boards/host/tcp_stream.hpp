@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "emax/base/span.hpp"
 
@@ -12,19 +13,21 @@
 
 namespace emax::host {
 
-/// Listens on 127.0.0.1 and serves one client after the other.
+/// Listens on an address of this machine and serves one client after the other.
 ///
-/// A client that comes while another one is served is told so in one line and goes. Where the other
-/// one has closed its side already, the new one waits until it is done with, unless that one
-/// has read nothing of its answers for a second.
+/// A client that comes while another one is served is refused: its connection is closed without a
+/// word, which it would take for an answer. Where the other one has closed its side already, the
+/// new one waits until it is done with, unless that one has read nothing of its answers for a
+/// second. What a client has left without the end of a line is not executed.
 class TcpStream final : public ConsolePort {
  public:
   TcpStream() noexcept = default;
   ~TcpStream();
 
-  /// @param[in] port 0 for one that the system chooses.
+  /// @param[in] address Of IPv4, in numbers: 127.0.0.1 for this machine alone, 0.0.0.0 for all.
+  /// @param[in] port    0 for one that the system chooses.
   /// @returns Why the port cannot be had, if so.
-  desk::Problem listen(std::uint16_t port);
+  desk::Problem listen(const std::string& address, std::uint16_t port);
   std::uint16_t port() const noexcept { return port_; }
 
   void wait(std::chrono::microseconds time, Wishes wishes) override;
@@ -51,7 +54,6 @@ class TcpStream final : public ConsolePort {
   SteadyClock::time_point last_transfer_;
   bool was_dropped_ = false;
   bool input_ended_ = false;
-  bool line_is_open_ = false;
 };
 
 }  // namespace emax::host

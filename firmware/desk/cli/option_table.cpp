@@ -210,6 +210,12 @@ std::vector<Option> device_options(ReportOptions& options) {
                                      "uncertainties (k = 2); or with a header that names\n"
                                      "columns and units; - reads standard input",
                 options.points_path)
+      .add_text("instrument", "PORT", "HOST:PORT or a serial line",
+                "an emax that measures it: HOST:PORT, or a serial line\n"
+                "such as /dev/ttyACM0; it is put into its defaults\n"
+                "(*RST), set up from the options below, and measures;\n"
+                "this program evaluates. Ctrl-C ends its sweep first",
+                options.instrument)
       .add("model", "S,f0,beta[,uS,uf0,ubeta]", "",
            "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",
            "known parameters: sensitivity in V/(m/s^2), natural\n"

@@ -25,6 +25,15 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
     return bad_input("--model: excludes --points; expected one of the two");
   }
   const std::string source = has_model ? "--model" : "--points";
+  if (!options.instrument.empty() && !options.measures()) {
+    return bad_input("--instrument: excludes " + source + "; expected one of the two");
+  }
+  for (const Given& given : all) {
+    if (!options.instrument.empty() && given.option->name.compare(0, 6, "bench-") == 0) {
+      return bad_input("--" + given.option->name +
+                       ": describes the simulated bench; excluded by --instrument");
+    }
+  }
   for (const Given& given : all) {
     if (given.option->is_for_bench && !options.measures()) {
       return excluded(given, source);
@@ -71,7 +80,8 @@ app::SettingsError check_settings(const ReportOptions& options) {
     return {"seed", "four whole numbers; three do with --generator 1982 only"};
   }
   const app::SettingsError error = app::check(options.settings);
-  return error.setting == nullptr && options.measures()
+  // What an instrument can do, it says itself.
+  return error.setting == nullptr && options.measures() && options.instrument.empty()
              ? app::check(options.sweep, sim::kBenchFormat)
              : error;
 }

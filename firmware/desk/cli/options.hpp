@@ -20,12 +20,13 @@
 namespace emax::desk {
 
 /// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
-/// neither, from a measurement on the simulated bench.
+/// neither, from a measurement: of the instrument at a port, or on the simulated bench.
 struct ReportOptions {
   app::Settings settings = app::kDefaultSettings;
   ImportOptions import;     ///< What is said of the table in `points_path`.
   double damping = 0.0;     ///< For a table of magnitudes that leaves it open; 0 for none.
   std::string points_path;  ///< "-" for standard input; empty for none.
+  std::string instrument;   ///< Its port, if it is to measure; empty for the simulated bench.
   std::string model_text;   ///< As it was given; empty for none.
   app::Device device = {};  ///< What `model_text` says.
   std::size_t seed_count = 4;

@@ -62,6 +62,32 @@ Problem BenchJob::start(const ReportOptions& options) {
                                : fault("the bench does not start: " + in_line(explain(status)));
 }
 
+Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleProgress& progress) {
+  InstrumentClient client;
+  Problem problem = client.open(options.instrument);
+  if (!problem) {
+    problem = client.set_up(options.sweep);
+  }
+  if (!problem) {
+    problem = client.measure(progress);
+  }
+  if (!problem) {
+    problem = client.fetch(remote_);
+  }
+  if (problem) {
+    return problem;
+  }
+  is_remote_ = true;
+  simulated_ = remote_.simulated;
+  sequencer_.take(remote_.results);
+  if (remote_.results.status != Status::kOk) {
+    return describe_sweep();
+  }
+  const app::Refusal refusal = sequencer_.evaluate(options.settings, app::Goal::kReport);
+  const bool is_told = !refusal || refusal.obstacle == app::Obstacle::kEvaluation;
+  return is_told ? Problem{} : fault("the instrument has measured no points");
+}
+
 Problem BenchJob::run(ConsoleProgress& progress) {
   while (sequencer_.is_working()) {
     if (stop_requested()) {
@@ -89,7 +115,8 @@ Problem BenchJob::describe_sweep() const {
   if (sweep.status == Status::kOk) {
     return {};
   }
-  const bool is_at_zero = bench_.drive_is_at_zero();
+  // An instrument ends every sweep that way.
+  const bool is_at_zero = is_remote_ || bench_.drive_is_at_zero();
   const std::string drive = is_at_zero ? "drive at zero" : "DRIVE NOT AT ZERO";
   if (sweep.status == Status::kStopped && is_at_zero) {
     return {ExitStatus::kStopped, "stopped during the sweep, " + drive};

@@ -1,4 +1,4 @@
-// The work of `emax report`: a sequencer and the simulated bench that it measures on.
+// The work of `emax report`: a sequencer, and the simulated bench or the instrument that measures.
 #pragma once
 
 #include "emax/app/report/measurement.hpp"
@@ -8,10 +8,11 @@
 #include "desk/cli/console_progress.hpp"
 #include "desk/cli/options.hpp"
 #include "desk/cli/problem.hpp"
+#include "desk/instrument/instrument_client.hpp"
 
 namespace emax::desk {
 
-/// A bench with the sequencer that drives it.
+/// A bench with the sequencer that drives it, or an instrument whose sweep it takes over.
 class BenchJob final {
  public:
   BenchJob() = default;
@@ -30,12 +31,19 @@ class BenchJob final {
   /// if so. Failures of the evaluation are left to the caller.
   Problem run(ConsoleProgress& progress);
 
+  /// The same, where an instrument measures: sets it up, waits for its sweep, and begins to
+  /// evaluate what it has measured.
+  ///
+  /// @returns Why there is no sweep, or that it has ended early, as of `run()`.
+  Problem measure_with_instrument(const ReportOptions& options, ConsoleProgress& progress);
+
   app::Sequencer& sequencer() noexcept { return sequencer_; }
   /// @returns Whether the sweep began at all.
   bool has_measured() const noexcept { return sequencer_.sweep().stage != app::SweepStage::kIdle; }
   /// Refers to this object.
   app::Measurement measurement() const noexcept {
-    return {sequencer_.sweep(), bench_.format(), &simulated_};
+    return {sequencer_.sweep(), is_remote_ ? remote_.format : bench_.format(),
+            is_remote_ && !remote_.is_simulated ? nullptr : &simulated_};
   }
 
  private:
@@ -45,6 +53,8 @@ class BenchJob final {
   sim::SimBench bench_;
   app::Sequencer sequencer_;
   app::SimulatedBench simulated_;
+  InstrumentSweep remote_;
+  bool is_remote_ = false;
 };
 
 }  // namespace emax::desk

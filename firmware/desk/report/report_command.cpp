@@ -91,7 +91,13 @@ struct Results {
 };
 
 // Begins with what there is to begin with: a bench, a device or points.
-Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& imported) {
+Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& imported,
+              ConsoleProgress& progress) {
+  if (!options.instrument.empty()) {
+    const Problem problem = job.measure_with_instrument(options, progress);
+    const bool is_refused = !problem && job.sequencer().evaluation().status() != Status::kOk;
+    return is_refused ? describe(job.sequencer().evaluation(), options) : problem;
+  }
   if (options.measures()) {
     return job.start(options);
   }
@@ -128,7 +134,7 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     sequencer.lend_trial_pieces(Span<TrialPiece>(pieces.get(), EnergyTrials::kManyPieces));
   }
   ConsoleProgress progress;
-  Problem problem = start(options, job, imported);
+  Problem problem = start(options, job, imported, progress);
   if (!problem) {
     problem = job.run(progress);
   }
@@ -253,13 +259,14 @@ Problem run_report(Span<const std::string_view> arguments) {
 
 std::string help_on_report() {
   return R"(usage: emax report [options]
+       emax report --instrument PORT [options]
        emax report --points FILE [options]
        emax report --model S,f0,beta[,uS,uf0,ubeta] [options]
 
-Measures an accelerometer on the simulated bench, or takes measured points or
-known parameters; identifies it, finds the signal with the largest error energy
-and prints a report. Numbers are in SI units; --option VALUE and --option=VALUE
-both do.
+Measures an accelerometer on the simulated bench or by an instrument, or takes
+measured points or known parameters; identifies it, finds the signal with the
+largest error energy and prints a report. Numbers are in SI units; --option
+VALUE and --option=VALUE both do.
 )" + help_on_report_options();
 }
 

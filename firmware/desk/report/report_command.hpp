@@ -33,6 +33,7 @@ inline constexpr Command kReportCommand = {
 )",
     R"(  emax report
   emax report --bench-seed 2 --bench-fault swapped-channels@4 --out results
+  emax report --instrument /dev/ttyACM0 --level 5 --out results
   emax report --points host_tests/data/djb_a1800v.csv --out results
   emax report --model 1.037,4073,0.3182,0.003,6,0.0004 --time 0.01
   emax report --model 1.037,4073,0.3182 --order 4 --json

@@ -1,8 +1,6 @@
 // The table of all SCPI commands for people who read.
 #include "desk/scpi/command_list.hpp"
 
-#include <cstring>
-
 #include "emax/app/instrument/instrument.hpp"
 
 namespace emax::desk {
@@ -40,13 +38,11 @@ const char* forms_of(const Command& command) noexcept {
 
 void write_command_list(app::TextWriter& out) noexcept {
   out.text("| command | forms | parameters | |\n|---|---|---|---|\n");
-  const char* description = app::Instrument::command_descriptions();
   for (const Command& command : app::Instrument::commands()) {
     out.text("| `").text(command.pattern).text("` | ").text(forms_of(command)).text(" | ");
     write_code(command.parameters, out);
     out.text(" | ");
-    write_cell(description, out);
-    description += std::strlen(description) + 1;
+    write_cell(command.description, out);
     out.text(" |\n");
   }
 }

@@ -24,8 +24,12 @@ bool take_plain_number(std::string_view text, double& value) noexcept {
   return number.status == Status::kOk && number.length == text.size();
 }
 
-bool take_port(std::string_view text, ScpiOptions& options) noexcept {
+bool take_port(std::string_view text, ScpiOptions& options) {
   double port = 0.0;
+  if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) {
+    options.address = text.substr(0, colon);
+    text.remove_prefix(colon + 1);
+  }
   options.listens = take_plain_number(text, port) && port >= 0.0 && port <= kMaxPort;
   options.port = options.listens ? static_cast<std::uint16_t>(port) : std::uint16_t{0};
   return options.listens && port == options.port;
@@ -40,9 +44,13 @@ Syntax syntax_of(ScpiOptions& options) {
   constexpr const char* kHeading = "The console";
   Syntax syntax;
   syntax.options = {
-      {"tcp", kHeading, "PORT", "", "a port from 1 to 65535, or 0 for any that is free",
-       "serve one client after the other on 127.0.0.1 instead;\n"
-       "0 chooses a port; which it is, standard error says",
+      {"tcp", kHeading, "[ADDRESS:]PORT", "",
+       "a port from 1 to 65535, or 0 for any that is free, with or without an address before it",
+       "serve one client after the other on a port instead;\n"
+       "0 chooses one; which it is, standard error says. On\n"
+       "127.0.0.1 without an address; on another one, such\n"
+       "as 0.0.0.0 for all, whoever reaches it may drive the\n"
+       "shaker: there is no password",
        [&options](std::string_view text) { return take_port(text, options); }},
       {"pace", kHeading, "X", "as fast as it goes",
        "seconds of the bench per second, from 0.001 to 1e6; 1 is real time",

@@ -15,7 +15,8 @@ namespace emax::desk {
 struct ScpiOptions {
   ReportOptions report;  ///< Its bench and its sweep; nothing else of it is asked for.
   bool listens = false;
-  std::uint16_t port = 0;  ///< With `listens`; 0 for one that the system chooses.
+  std::string address = "127.0.0.1";  ///< With `listens`.
+  std::uint16_t port = 0;             ///< The same; 0 for one that the system chooses.
   double pace = 0.0;       ///< Seconds of the bench per second; 0 for as fast as it goes.
   std::string store_path;  ///< Empty for a store that forgets.
   bool prints_commands = false;

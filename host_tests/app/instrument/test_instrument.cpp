@@ -1,6 +1,8 @@
 // The commands of the instrument: each with its answer, its wrong input, and what it makes stale.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 
 #include "support/evaluations.hpp"
 #include "support/instrument_bench.hpp"
+#include "support/json_reader.hpp"
 #include "support/string_sink.hpp"
 #include "support/table1.hpp"
 
@@ -53,23 +56,23 @@ constexpr SettingCase kSettings[] = {
     {"CALC:FILT:FREQ", "2 KHZ", "2000", "1000", "0"},
     {"CALC:FILT:GAIN", "1.5", "1.5", "AUTO", "-1"},
     {"CALC:FILT:GAIN", "TRACK", "TRAC", "AUTO", "MANUAL"},
-    {"CALC:ENER:TIME", "4ms", "0.0040000000000000001", "0.002", "0"},
+    {"CALC:ENER:TIME", "4ms", "4.0E-3", "2.0E-3", "0"},
     {"CALC:ENER:LIM", "2", "2", "AUTO", "0"},
     {"CALC:ENER:CRIT", "DIFFERENCE", "DIFF", "ISE", "BOTH"},
     {"CALC:ENER:METH", "pap", "PAP", "BEST", "WORST"},
-    {"CALC:ENER:STEP", "4US", "3.9999999999999998e-06", "1.9999999999999999e-06", "-1US"},
+    {"CALC:ENER:STEP", "4US", "4.0E-6", "2.0E-6", "-1US"},
     {"CALC:ENER:ITER", "31", "31", "30", "1001"},
     {"CALC:MCAR:TRI", "5000", "5000", "200000", "999"},
     {"CALC:MCAR:SEED", "1,2,3,4", "1,2,3,4", "123456789,345678901,567890123,789012345", "0,1,1,1"},
-    {"CALC:MCAR:PROB", "0.99", "0.98999999999999999", "0.94999999999999996", "1"},
+    {"CALC:MCAR:PROB", "0.99", "9.9E-1", "9.5E-1", "1"},
     {"CALC:MCAR:DIST", "NORM", "NORM", "BOX", "LOG"},
     {"CALC:MCAR:ADAP", "ON", "1", "0", "MAYBE"},
     {"CALC:MCAR:BIRG", "1", "1", "0", "MAYBE"},
     {"CALC:MCAR:GEN", "WH1982", "WH1982", "WH2006", "WH2007"},
-    {"SENS:REF:SENS", "0.2,1", "0.20000000000000001,1", "0.10000000000000001,0.5", "0.1,51"},
+    {"SENS:REF:SENS", "0.2,1", "2.0E-1,1", "1.0E-1,5.0E-1", "0.1,51"},
     {"SWE:FREQ", "100,1KHZ,5e3", "100,1000,5000", "200,1000,2500,4000,5500", "1000,100,200"},
     {"SWE:CYCL", "5", "5", "3", "0"},
-    {"SWE:SETT", "20 MS", "0.02", "0.01", "11"},
+    {"SWE:SETT", "20 MS", "2.0E-2", "1.0E-2", "11"},
     {"SOUR:LEV", "2", "2", "1", "0"},
     {"SOUR:LIM", "30 M/S2", "30", "20", "0"},
     {"SOUR:SLEW", "200000", "200000", "100000", "1"},
@@ -77,14 +80,14 @@ constexpr SettingCase kSettings[] = {
     {"SOUR:FULL", "8", "8", "0", "4"},
     {"SWE:REP", "4", "4", "3", "17"},
     {"SWE:CHEC", "80 HZ", "80", "160", "50KHZ"},
-    {"REF:GAIN", "20,0.25", "20,0.25", "10,0", "0"},
-    {"DEV:SENS", "0.25", "0.25", "1.02", "-1"},
+    {"REF:GAIN", "20,0.25", "20,2.5E-1", "10,0", "0"},
+    {"DEV:SENS", "0.25", "2.5E-1", "1.02", "-1"},
     {"REF:FULL", "12", "12", "0", "-1"},
     {"DEV:FULL", "12", "12", "0", "-1"},
     {"CLOC:UNC", "25", "25", "0", "-1"},
-    {"CROS:UNC", "0.5", "0.5", "0", "51"},
-    {"LIN:UNC", "0.5", "0.5", "0", "51"},
-    {"CORR:RAT", "1.25,0.5", "1.25,0.5", "1,0", "11"},
+    {"CROS:UNC", "0.5", "5.0E-1", "0", "51"},
+    {"LIN:UNC", "0.5", "5.0E-1", "0", "51"},
+    {"CORR:RAT", "1.25,0.5", "1.25,5.0E-1", "1,0", "11"},
 };
 
 TEST(Instrument, SetsAnswersAndRefusesEachSetting) {
@@ -142,13 +145,13 @@ TEST(Instrument, TakesTheDefaultsOfTheSweepFromTheBoard) {
   i.sweep.reference.sensitivity[0] = 0.25;
   EXPECT_EQ(
       i.ask("SOUR:LEV DEF;LEV?;LEV? DEF;:SWE:SETT DEF;SETT?;CYCL DEF;CYCL?;:REF:SENS DEF;SENS?"),
-      "3;3;0.5;7;0.25,0.5");
+      "3;3;5.0E-1;7;2.5E-1,5.0E-1");
   EXPECT_EQ(i.ask("*RST;:SOUR:LEV?;:SWE:CYCL?"), "3;7");
 }
 
 TEST(Instrument, KeepsAnUncertaintyThatIsNotGiven) {
   InstrumentBench i;
-  EXPECT_EQ(i.ask("CORR:RAT 1.5,0.25;RAT 1.25;RAT?"), "1.25,0.25");
+  EXPECT_EQ(i.ask("CORR:RAT 1.5,0.25;RAT 1.25;RAT?"), "1.25,2.5E-1");
   EXPECT_EQ(i.ask("CORR:RAT DEF,DEF;RAT?;RAT? MAX"), "1,0;10");
   EXPECT_EQ(error_of(i, "CORR:RAT 1.5,51"), "-222,\"Data out of range;51\"");
   EXPECT_EQ(i.ask("CORR:RAT?"), "1,0");
@@ -163,18 +166,22 @@ TEST(Instrument, KeepsAnUncertaintyThatIsNotGiven) {
   EXPECT_NEAR(skew[1], 2e-9, 1e-24);
   EXPECT_EQ(error_of(i, "CORR:SKEW 2MS"), "-222,\"Data out of range;2MS\"");
   EXPECT_EQ(i.numbers("MOUN:UNC?"), std::vector<double>{0.2});
-  EXPECT_EQ(i.ask("MOUN:UNC 0.5 PCT;UNC?"), "0.5");
+  EXPECT_EQ(i.ask("MOUN:UNC 0.5 PCT;UNC?"), "5.0E-1");
 }
 
 TEST(Instrument, TakesTheReferenceOverFrequency) {
   InstrumentBench i;
-  EXPECT_EQ(i.ask("REF:TABL 10,0.25,1000,0.5,5000,0.75;SENS?"), "0.25,0.5");
-  EXPECT_EQ(i.ask("REF:TABL:CLE;:REF:TABL?"), "0,0.25");
+  EXPECT_EQ(i.ask("REF:TABL 10,0.25,1000,0.5,5000,0.75;SENS?"), "2.5E-1,5.0E-1");
+  EXPECT_EQ(i.ask("REF:TABL:CLE;:REF:TABL?"), "0,2.5E-1");
+  EXPECT_EQ(i.ask("REF:TABL 10,0.25,1000,0.5;TABL 0,0.125;TABL?"),
+            "0,1.25E-1");  // As it is answered.
+  EXPECT_EQ(i.ask("REF:TABL 0,0.25;TABL?"), "0,2.5E-1");
   const char* kExpected = "-109,\"Missing parameter;2 to 32 pairs of Hz and V/(m/s2)\"";
   EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000"), kExpected);
   EXPECT_EQ(error_of(i, "REF:TABL 10,0.25"), kExpected);
-  EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000,0"), "-222,\"Data out of range;0\"");
-  EXPECT_EQ(i.ask("REF:TABL?"), "0,0.25");
+  EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000,0"),
+            "-221,\"Settings conflict;reference sensitivity: above 0, in V/(m/s^2)\"");
+  EXPECT_EQ(i.ask("REF:TABL?"), "0,2.5E-1");
 }
 
 TEST(Instrument, NamesTheSettingThatIsInConflict) {
@@ -304,9 +311,7 @@ TEST(Instrument, NamesWhatIsMissing) {
 TEST(Instrument, AnswersWhatThePapersDeviceGives) {
   InstrumentBench i;
   ASSERT_EQ(i.ask(kPaperModel), "");
-  EXPECT_EQ(i.ask("CALC:MOD?"),
-            "1.0369999999999999,4073,0.31819999999999998,"
-            "0.0030000000000000001,6,0.00040000000000000002");
+  EXPECT_EQ(i.ask("CALC:MOD?"), "1.037,4073,3.182E-1,3.0E-3,6,4.0E-4");
   const std::vector<double> energy = i.numbers("CALC:ENER?");
   ASSERT_EQ(energy.size(), 5U);
   EXPECT_NEAR(energy[0], 0.005115251359876, 1e-15);
@@ -433,6 +438,186 @@ TEST(Instrument, IdentifiesPointsFromElsewhere) {
   EXPECT_NEAR(points[3], first[2], 1e-12);
   EXPECT_NEAR(points[4], first[3] / 2.0, 1e-12);  // Expanded in, standard out.
   EXPECT_NEAR(points[5], first[4] / 2.0, 1e-12);
+}
+
+/// Asks for all points in the form that TRACe takes, and gives them back in pieces of five.
+void hand_back(InstrumentBench& i, const std::string& points, const std::string& percent) {
+  EXPECT_EQ(i.ask("TRAC:FRES:CLE;:CALC:REF:UNC " + percent), "");
+  std::stringstream fields(points);
+  std::string field;
+  std::string message;
+  for (int n = 0; std::getline(fields, field, ','); ++n) {
+    message += (n % 5 == 0 ? "TRAC:FRES:DATA " : ",") + field;
+    if (n % 5 == 4) {
+      EXPECT_EQ(i.ask(message), "");
+      message.clear();
+    }
+  }
+}
+
+// What FETCh:TRACe? answers, with CALC:REF:UNC?, is the same device again: the common part is not
+// taken for one that the number of points makes smaller.
+TEST(Instrument, TakesItsOwnPointsBack) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  const std::vector<double> measured = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(measured.size(), 8U);
+  EXPECT_GT(measured[3], 0.0025 * measured[0]) << "the reference's 0.5 % (k = 2) at least";
+  const std::string points = i.ask("FETC:TRAC?");
+  const std::vector<double> fetched = i.numbers("FETC:FRES?");
+  const std::vector<double> traced = i.numbers("FETC:TRAC?");
+  ASSERT_EQ(traced.size() + 1, fetched.size());
+  for (std::size_t k = 0; k < traced.size(); ++k) {
+    EXPECT_EQ(traced[k], (k % 5 < 3 ? 1.0 : 2.0) * fetched[k + 1]);
+  }
+  const std::string percent = i.ask("CALC:REF:UNC?");
+  EXPECT_EQ(error_of(i, "CALC:REF:UNC 1").substr(0, 4), "-221") << "it is that of the sweep";
+  hand_back(i, points, percent);
+  EXPECT_EQ(i.ask("CALC:REF:UNC?"), percent);
+  const std::vector<double> again = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(again.size(), 8U);
+  for (std::size_t k = 0; k < 8; ++k) {
+    // A root of a difference of squares, of which the common part is nearly all: 1e-16 times 1e4.
+    EXPECT_NEAR(again[k], measured[k], 1e-9 * measured[k]) << k;
+  }
+  const std::vector<double> back = i.numbers("FETC:TRAC?");
+  ASSERT_EQ(back.size(), traced.size());
+  for (std::size_t k = 0; k < back.size(); ++k) {
+    EXPECT_NEAR(back[k], traced[k], 1e-12 * std::abs(traced[k])) << k;
+  }
+  // Given afterwards it is the same.
+  hand_back(i, points, "0");
+  const std::vector<double> apart = i.numbers("CALC:IDEN?");
+  EXPECT_LT(apart[3], 0.6 * measured[3]) << "five points taken as independent";
+  EXPECT_EQ(i.ask("CALC:REF:UNC " + percent), "");
+  EXPECT_NEAR(i.numbers("CALC:IDEN?")[3], measured[3], 1e-9 * measured[3]);
+  EXPECT_EQ(error_of(i, "CALC:REF:UNC 20"),
+            "-222,\"Data out of range;a point has a smaller U(A)\"");
+  EXPECT_EQ(i.ask("CALC:REF:UNC?"), percent);
+  EXPECT_EQ(error_of(i, "TRAC:FRES:DATA 9000,1,-90,1e-5,1"),
+            "-222,\"Data out of range;U(A) must be above CALC:REF:UNC\"");
+  EXPECT_EQ(i.ask("*RST;:CALC:REF:UNC?"), "0");
+}
+
+// By hand: 1 % in all and 0.6 % in common leave 0.8 % for each point.
+TEST(Instrument, TakesTheCommonPartOutOfPoints) {
+  InstrumentBench i;
+  (void)i.ask("CALC:REF:UNC 0.6 PCT;:TRAC:FRES:DATA 100,2,-1,0.02,1,200,2,-2,0.02,1");
+  const std::vector<double> points = i.numbers("FETC:FRES?");
+  ASSERT_EQ(points.size(), 11U);
+  EXPECT_NEAR(points[4], 0.01, 1e-15) << "standard, with the common part";
+  const FrequencyResponse& table = i.instrument->sequencer().points();
+  EXPECT_NEAR(table.points()[0].u_amplitude, 0.008, 1e-15);
+  EXPECT_NEAR(table.common()[0], 0.003, 1e-15);
+}
+
+TEST(Instrument, SetsEverythingAgainByWhatLrnAnswers) {
+  InstrumentBench i;
+  const std::string defaults = i.ask("*LRN?");
+  EXPECT_LE(defaults.size(), 4096U) << "it must fit into one message";
+  EXPECT_EQ(defaults.substr(0, 15), ":SENS:REF:SENS ");
+  EXPECT_EQ(i.ask(":SENS:REF:SENS 0.3,0.7;TABL 10,0.3,1000,0.5;:SENS:SWE:CYCL 4;:SOUR:LEV "
+                  "3;:CALC:FILT:GAIN 1.1;"
+                  ":CALC:ENER:CRIT BAND;LIM 2;DEL NONE;:CALC:MCAR:SEED 1,2,3,4;ADAP ON;"
+                  ":CALC:TREN:TIME 0.001,0.002,0.003;:SENS:SWE:FREQ 100,200,300,400"),
+            "");
+  EXPECT_EQ(i.errors(), "");
+  const std::string changed = i.ask("*LRN?");
+  EXPECT_NE(changed, defaults);
+  EXPECT_NE(changed.find(";:SENS:SWE:FREQ 100,200,300,400"), std::string::npos) << changed;
+  EXPECT_NE(changed.find(";:SENS:REF:TABL 10,3.0E-1,1000,5.0E-1;"), std::string::npos) << changed;
+  EXPECT_EQ(i.ask("*RST"), "");
+  EXPECT_EQ(i.ask("*LRN?"), defaults);
+  EXPECT_EQ(i.ask(changed), "");
+  EXPECT_EQ(i.errors(), "");
+  EXPECT_EQ(i.ask("*LRN?"), changed);
+}
+
+TEST(Instrument, ListsItsHeaders) {
+  InstrumentBench i;
+  const std::string answer = i.ask("SYST:HELP:HEAD?");
+  ASSERT_EQ(answer.substr(0, 2), "#4");
+  const std::string lines = answer.substr(6);
+  EXPECT_EQ(answer.substr(2, 4), std::to_string(lines.size()));
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'),
+            static_cast<std::ptrdiff_t>(app::Instrument::commands().size()));
+  for (const char* line :
+       {"*CLS/nquery/", "*IDN?/qonly/", "*ESE", ":ABORt/nquery/", ":SYSTem:HELP:HEADers?/qonly/",
+        ":SOURce:LEVel", "[SENSe:]SWEep:FREQuency"}) {
+    EXPECT_NE(("\n" + lines).find(std::string("\n") + line + "\n"), std::string::npos) << line;
+  }
+}
+
+TEST(Instrument, AnswersAllErrorsAtOnce) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("SYST:ERR:ALL?"), "0,\"No error\"");
+  EXPECT_EQ(i.ask("SYST:ERR:CODE:ALL?"), "0");
+  (void)i.ask("NO\nSOUR:LEV 0\n*ESE");
+  EXPECT_EQ(i.ask("SYST:ERR:CODE:ALL?"), "-113,-222,-109");
+  EXPECT_EQ(i.ask("SYST:ERR:COUN?"), "0");
+  (void)i.ask("NO\n*ESE");
+  EXPECT_EQ(i.ask("SYST:ERR:ALL?"), "-113,\"Undefined header;NO\",-109,\"Missing parameter;*ESE\"");
+  EXPECT_EQ(i.ask("SYST:ERR:COUN?"), "0");
+}
+
+TEST(Instrument, HasTheOtherNamesOfTheSweep) {
+  for (const char* start : {"INIT", "INIT:IMM", "INIT:ALL", "INIT:SWE", "INIT:IMM:ALL",
+                            "INITIATE:IMMEDIATE:SWEEP", "*TRG"}) {
+    InstrumentBench i;
+    EXPECT_EQ(i.ask(start), "");
+    EXPECT_TRUE(i.instrument->is_sweeping()) << start;
+    EXPECT_EQ(i.ask("*OPC?;:TRAC:FRES:POIN?"), "1;5") << start;
+    EXPECT_EQ(i.errors(), "") << start;
+  }
+  InstrumentBench i;
+  const std::string points = i.ask("READ:FRES?");
+  EXPECT_EQ(points.substr(0, 6), "5,200,");
+  EXPECT_EQ(i.ask("FETC:FRES?"), points);
+  const std::string others = i.ask("READ:FRES?");
+  EXPECT_NE(others, points) << "measured anew";
+  EXPECT_EQ(i.ask("*OPT?;:SYST:CAP?"), "SIM;(SENSE&SOURCE&CALCULATE&TRACE)");
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(Instrument, KeepsTheTimesOfTheTrend) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("CALC:TREN:TIME?"), "2.0E-3,4.0E-3,6.0E-3,8.0E-3,1.0E-2");
+  EXPECT_EQ(i.ask("CALC:TREN:TIME 1ms,2 MS;TIME?"), "1.0E-3,2.0E-3");
+  (void)i.ask(kPaperModel);
+  EXPECT_EQ(i.numbers("CALC:TREN?").size(), 4U);
+  EXPECT_EQ(error_of(i, "CALC:TREN:TIME 1").substr(0, 4), "-221");
+  EXPECT_EQ(i.ask("CALC:TREN:TIME?"), "1.0E-3,2.0E-3");
+}
+
+// The numbers are those of the other queries; what is not there is null.
+TEST(Instrument, FetchesEverythingAsJson) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  const auto fetch = [&i] {
+    const std::string answer = i.ask("FETC:JSON?");
+    const auto digits = static_cast<std::size_t>(answer[1] - '0');
+    EXPECT_EQ(std::stoul(answer.substr(2, digits)), answer.size() - 2 - digits);
+    return test::JsonReader(answer.substr(2 + digits));
+  };
+  const test::JsonReader before = fetch();
+  EXPECT_TRUE(before.valid());
+  EXPECT_EQ(before.at("model"), "null");
+  EXPECT_EQ(before.at("energy"), "null");
+  const std::vector<double> fit = i.numbers("CALC:IDEN?");
+  const std::vector<double> energy = i.numbers("CALC:ENER?");
+  const std::vector<double> points = i.numbers("FETC:TRAC?");
+  const test::JsonReader json = fetch();
+  EXPECT_TRUE(json.valid());
+  EXPECT_EQ(json.number("model.S"), fit[0]);
+  EXPECT_EQ(json.number("model.uf0"), fit[4]);
+  EXPECT_EQ(json.number("energy.E"), energy[0]);
+  EXPECT_EQ(json.number("bench.points"), 5.0);
+  EXPECT_EQ(json.at("points[]"), "5");
+  EXPECT_EQ(json.number("points[4].f_hz"), points[20]);
+  EXPECT_EQ(json.number("points[4].u_amplitude"), points[23]);
+  EXPECT_EQ(json.number("sweep.settings.level"), 1.0);
+  EXPECT_EQ(json.at("sweep.rows[]"), "5");
+  EXPECT_EQ(json.at("monte_carlo"), "null");
 }
 
 TEST(Instrument, RefusesPointsAndKeepsTheTable) {
@@ -584,10 +769,10 @@ TEST(Instrument, KeepsSettingsInFourSlots) {
   ASSERT_EQ(i.ask("*RST;:CALC:FILT:ORD 3;*SAV 0"), "");
   i.switch_on();
   EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
-            "0.002;AUTO;1;123456789,345678901,567890123,789012345;10");
+            "2.0E-3;AUTO;1;123456789,345678901,567890123,789012345;10");
   ASSERT_EQ(i.ask("*RCL 3"), "");
   EXPECT_EQ(i.ask("CALC:ENER:TIME?;LIM?;:SOUR:LEV?;:CALC:MCAR:SEED?;:CALC:FILT:ORD?"),
-            "0.0030000000000000001;2;0.69999999999999996;9,8,7,6;10");
+            "3.0E-3;2;7.0E-1;9,8,7,6;10");
   EXPECT_EQ(i.ask("*RCL 0;:CALC:FILT:ORD?"), "3");
   const double energy = i.numbers(std::string(kPaperModel) + ";:CALC:ENER?")[0];
   ASSERT_EQ(i.ask("*RCL 3"), "");
@@ -663,7 +848,7 @@ TEST(Instrument, CountsErrorsUpToTheQueuesEnd) {
 TEST(Instrument, TakesCompoundLinesAndStaysAtTheNode) {
   InstrumentBench i;
   EXPECT_EQ(i.ask("CALC:ENER:TIME 3 MS;STEP 5us;TIME?;STEP?;*IDN?;ITER?;:CALC:FILT:ORD?"),
-            "0.0030000000000000001;5.0000000000000004e-06;emax,test,4711,0.1.0;30;10");
+            "3.0E-3;5.0E-6;emax,test,4711,0.1.0;30;10");
   EXPECT_EQ(i.ask("calculate:filter:order 7;frequency 2khz;:calc:filt:freq?"), "2000");
   EXPECT_EQ(i.errors(), "");
 }

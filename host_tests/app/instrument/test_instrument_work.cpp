@@ -54,7 +54,7 @@ TEST_P(InstrumentWork, AnswersStatusAndProgressAtOnce) {
   InstrumentBench i;
   start(i);
   EXPECT_EQ(i.ask("STAT:OPER:COND?"), GetParam().condition);
-  EXPECT_EQ(i.ask("SYST:ERR?;*ESR?;*STB?"), "0,\"No error\";0;0");
+  EXPECT_EQ(i.ask("SYST:ERR?;*ESR?;*STB?"), "0,\"No error\";0;16");
   EXPECT_TRUE(i.instrument->is_working()) << "none of them waits";
   std::string progress;
   while (i.instrument->is_working() && progress.find(GetParam().stage) == std::string::npos) {
@@ -206,7 +206,7 @@ TEST(InstrumentQueries, WaitForTheSweepAndForWhatTheyBegin) {
   ASSERT_TRUE(i.settle());
   const std::string answers = i.console.receive();
   EXPECT_EQ(answers.substr(0, 6), "5,200,") << "all points";
-  EXPECT_NE(answers.find("\n0.00"), std::string::npos) << answers;
+  EXPECT_NE(answers.find("E-3,"), std::string::npos) << answers;
   EXPECT_EQ(answers.substr(answers.size() - 13), "0,\"No error\"\n");
 }
 
@@ -275,7 +275,126 @@ TEST(InstrumentQueries, AreAnsweredInPiecesOfAnySize) {
     answer += i.console.receive();
   }
   EXPECT_EQ(std::count(answer.begin(), answer.end(), ','), 1999);
-  EXPECT_EQ(answer.substr(0, 19), "0.75099757068263173");
+  EXPECT_EQ(answer.substr(0, 22), "7.509975706826317E-1,5");
+}
+
+// A long answer ends with its line: what is asked next is answered on one of its own.
+TEST(InstrumentQueries, AbortEndsRandomNumbersWithoutEnd) {
+  InstrumentBench i({}, 64);
+  i.send("DIAG:RAND? 1000000");
+  std::string answer;
+  for (int n = 0; n < 50; ++n) {
+    i.poll();
+    answer += i.console.receive();
+  }
+  EXPECT_FALSE(i.instrument->is_settled());
+  i.send("ABOR");
+  for (int n = 0; n < 100; ++n) {
+    i.poll();
+    answer += i.console.receive();
+  }
+  EXPECT_TRUE(i.instrument->is_settled());
+  EXPECT_EQ(answer.back(), '\n');
+  EXPECT_LT(std::count(answer.begin(), answer.end(), ','), 1000);
+  EXPECT_EQ(i.errors(), "-200,\"Execution error;aborted\"\n");
+  EXPECT_EQ(i.numbers("DIAG:RAND? 2").size(), 2U) << "the next one is not ended";
+}
+
+// IEEE 488.2, 5.8: what answers or is computed for a query ends, input and output are empty; what
+// INITiate began goes on, settings and errors stay.
+TEST(InstrumentDeviceClear, EndsWhatAnswersAndEmptiesInputAndOutput) {
+  for (const char* clear : {"\x03", "SOUR:LEV 5\x03", "\x03\n"}) {
+    InstrumentBench i({}, 64);
+    (void)i.ask("SOUR:LEV 2\nNO:SUCH");
+    i.send("DIAG:RAND? 1000000");
+    i.poll(50);
+    i.send("*RST");
+    i.console.send(clear);
+    i.poll(2);
+    const std::string answer = i.console.receive();
+    i.poll(20);
+    EXPECT_TRUE(i.instrument->is_settled());
+    EXPECT_EQ(answer.substr(0, 2), "7.");
+    EXPECT_EQ(i.console.receive(), "\n") << "the line that was sent in part ends";
+    EXPECT_EQ(i.ask("SOUR:LEV?"), "2");
+    EXPECT_EQ(i.errors(), "-113,\"Undefined header;NO:SUCH\"\n");
+  }
+}
+
+TEST(InstrumentDeviceClear, EndsAComputationThatOnlyAQueryWants) {
+  InstrumentBench i;
+  (void)i.ask(std::string(kPaperModel) + ";:CALC:MCAR:TRI 1000000");
+  i.send("CALC:MCAR?");
+  i.poll(20);
+  ASSERT_TRUE(i.instrument->is_held());
+  i.console.send("\x03");
+  i.poll(2);
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_EQ(i.console.receive(), "");
+  EXPECT_EQ(i.errors(), "");
+  (void)i.ask("INIT:MCAR;*OPC");
+  i.console.send("\x03");
+  i.poll(2);
+  EXPECT_TRUE(i.instrument->is_working()) << "what INITiate began goes on";
+  (void)i.ask("ABOR");
+  EXPECT_EQ(i.ask("*ESR?"), "128") << "*OPC does not wait any more: power on only";
+}
+
+TEST(InstrumentDeviceClear, ComesAsABreakOfTheLine) {
+  InstrumentBench i;
+  i.console.send("INIT;*OPC?\nSOUR:LEV 1");
+  i.poll(20);
+  i.console.send_break();
+  i.console.send("0\nSYST:VERS?\n");
+  ASSERT_TRUE(i.settle());
+  EXPECT_EQ(i.console.receive(), "1999.0\n");
+  EXPECT_EQ(i.errors().substr(0, 5), "-110,") << "what is left of that message is none";
+  EXPECT_EQ(i.ask("SOUR:LEV?"), "1");
+}
+
+// IEEE 488.2, 10.18: only power on, device clear, *CLS and *RST end what *OPC waits for.
+TEST(InstrumentConnections, DoNotEndWhatOpcWaitsFor) {
+  InstrumentBench i;
+  (void)i.ask("*CLS;INIT;*OPC");
+  i.console.connect(false);
+  i.poll(20);
+  i.console.connect(true);
+  ASSERT_TRUE(i.instrument->is_working());
+  EXPECT_EQ(i.ask("*ESR?"), "0");
+  ASSERT_TRUE(i.finish());
+  EXPECT_EQ(i.ask("*ESR?"), "1");
+}
+
+// What its sender has left without an end.
+TEST(InstrumentConnections, HalfAMessageIsNotExecuted) {
+  InstrumentBench i;
+  i.console.send("SOUR:LEV 10");
+  i.poll(20);
+  i.console.connect(false);
+  i.poll(2);
+  i.console.connect(true);
+  i.poll(20);
+  EXPECT_EQ(i.ask("SOUR:LEV?"), "1");
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST(InstrumentQueries, AreKeptForAReaderThatPauses) {
+  InstrumentBench i({}, 64);
+  i.console.wait_for_reader();
+  std::string expected;
+  std::string sent;
+  for (int n = 0; n < 1500; ++n) {
+    sent += "*IDN?\n";
+    expected += "emax,test,4711,0.1.0\n";
+  }
+  std::string answer;
+  for (int n = 0; n < 100'000 && answer.size() < expected.size(); ++n) {
+    sent.erase(0, i.console.send_what_fits(sent));
+    i.poll();
+    answer += n > 50'000 ? i.console.receive() : "";  // For the first 5 s nothing is read.
+  }
+  EXPECT_EQ(answer, expected);
+  EXPECT_EQ(i.errors(), "");
 }
 
 TEST(InstrumentQueries, CanBeDroppedWhenNobodyReads) {
@@ -306,8 +425,10 @@ TEST(InstrumentSweep, KeepsPointsOnAbort) {
   EXPECT_LT(points[0], 5.0);
   EXPECT_EQ(points.size(), 1U + 5 * static_cast<std::size_t>(points[0]));
   EXPECT_EQ(points[1], 200.0);
-  EXPECT_EQ(i.ask("CALC:ENER?"), "");
-  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+  if (points[0] >= 3.0) {
+    EXPECT_NE(i.ask("CALC:IDEN?"), "");
+    EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;fit of a sweep that ended early\"\n");
+  }
   (void)i.ask(kPaperModel);
   EXPECT_EQ(i.numbers("FETC:FRES?"), points) << "they stay beside a device from elsewhere";
   EXPECT_EQ(i.ask("TRAC:FRES:CLE;POIN?"), "0");
@@ -377,8 +498,31 @@ TEST_P(InstrumentFaults, AreErrorsWithTheDriveAtZero) {
   const std::vector<double> points = i.numbers("FETC:FRES?");
   ASSERT_GE(points.size(), 6U) << "what was measured before stays";
   EXPECT_EQ(points[1], 200.0);
-  EXPECT_EQ(i.ask("CALC:IDEN?"), "");
-  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
+  const bool has_fit = points[0] >= 3.0;
+  EXPECT_EQ(i.ask("CALC:IDEN?").empty(), !has_fit);
+  EXPECT_EQ(i.errors(), has_fit ? "-230,\"Data corrupt or stale;fit of a sweep that ended early\"\n"
+                                : "-230,\"Data corrupt or stale;a fit needs 3 points or more\"\n");
+}
+
+// The fit of what was measured before the fault is that of the same points from elsewhere, with one
+// warning, and the fault stays in question.
+TEST(InstrumentSweep, FitsThePointsBeforeAFault) {
+  sim::BenchSettings settings;
+  settings.fault = {sim::FaultKind::kUnpluggedDevice, 60'000};
+  InstrumentBench i(settings);
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no device: check its cable\"\n");
+  const std::vector<double> points = i.numbers("FETC:FRES?");
+  ASSERT_GE(points[0], 3.0);
+  const std::vector<double> fit = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(fit.size(), 8U);
+  EXPECT_EQ(fit[7], 2.0 * points[0] - 3.0) << "two equations for each point, three parameters";
+  EXPECT_NEAR(fit[0], 1.037, 4.0 * fit[3]);
+  EXPECT_NEAR(fit[1], 4073.0, 4.0 * fit[4]);
+  EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;fit of a sweep that ended early\"\n");
+  EXPECT_EQ(i.ask("STAT:QUES:COND?"), "1");
+  EXPECT_NE(i.ask("CALC:ENER?"), "");
+  EXPECT_EQ(i.errors(), "") << "one warning is enough";
 }
 
 TEST(InstrumentSweep, RefusesWhatTheBenchCannotDo) {

@@ -9,6 +9,8 @@ constexpr std::uint64_t kDeadlockPatience = 1'000'000;  // In microseconds.
 // Items of a long answer that are made in one call.
 constexpr int kItemsPerPoll = 16;
 constexpr std::size_t kBytesPerPoll = 128;
+// Control-C.
+constexpr char kDeviceClear = '\x03';
 
 }  // namespace
 
@@ -29,6 +31,10 @@ void Instrument::poll() noexcept {
     ports_.watchdog->kick();
   }
   work();
+  converse();
+}
+
+void Instrument::converse() noexcept {
   follow_peer();
   receive();
   execute();
@@ -36,25 +42,45 @@ void Instrument::poll() noexcept {
 }
 
 // A new peer meets no message, answer or wait of the one before. What runs in the background goes
-// on; a computation that only a query had asked for ends with it.
+// on, and *OPC may be waiting for it: many open a connection for each command.
 void Instrument::follow_peer() noexcept {
   const bool is_connected = ports_.console.connected();
   if (was_connected_ && !is_connected) {
-    session_.clear();
-    completes_operation_ = false;
-    if (is_working() && !is_background_) {
-      abort();
-    }
+    session_.forget_peer();
+    end_query();
   }
   was_connected_ = is_connected;
 }
 
+// What only a query had asked for ends with it.
+void Instrument::end_query() noexcept {
+  if (is_working() && !is_background_) {
+    abort();
+  }
+}
+
+void Instrument::clear_device() noexcept {
+  session_.clear();
+  completes_operation_ = false;
+  end_query();
+}
+
 void Instrument::receive() noexcept {
+  if (ports_.console.take_break()) {
+    clear_device();
+  }
   char bytes[kBytesPerPoll];
   const std::size_t room = session_.room();
   const Span<char> space(bytes, room < kBytesPerPoll ? room : kBytesPerPoll);
   const std::size_t count = ports_.console.read(space);
-  session_.receive(Span<const char>(bytes, count));
+  std::size_t begin = 0;  // Behind the last device clear.
+  for (std::size_t i = 0; i < count; ++i) {
+    begin = bytes[i] == kDeviceClear ? i + 1 : begin;
+  }
+  if (begin > 0) {
+    clear_device();
+  }
+  session_.receive(Span<const char>(bytes + begin, count - begin));
   if (ports_.console.take_lost_count() > 0) {
     session_.status().report(scpi::ErrorCode::kInputBufferOverrun, "send less at a time");
   }
@@ -62,9 +88,9 @@ void Instrument::receive() noexcept {
 }
 
 void Instrument::execute() noexcept {
-  bool acted = session_.step(*this, commands());
+  bool acted = session_.step(*this, rows());
   for (int i = 0; acted && session_.is_answering() && i < kItemsPerPoll; ++i) {
-    (void)session_.step(*this, commands());
+    (void)session_.step(*this, rows());
   }
   has_acted_ = has_acted_ || acted;
 }
@@ -73,7 +99,7 @@ void Instrument::send() noexcept {
   const std::size_t count = ports_.console.write(session_.output());
   session_.consume(count);
   has_acted_ = has_acted_ || count > 0;
-  if (!session_.is_deadlocked() || count > 0) {
+  if (!session_.is_deadlocked() || count > 0 || ports_.console.waits_for_reader()) {
     is_deadlocked_ = false;
     return;
   }
@@ -93,6 +119,7 @@ void Instrument::reset() noexcept {
   abort();
   sequencer_.reset();
   change_device();
+  common_percent_ = 0.0;
   reset_settings();
 }
 

@@ -6,10 +6,14 @@
 
 #include "emax/app/instrument/instrument.hpp"
 #include "emax/app/scpi/call.hpp"
+#include "emax/app/scpi/command.hpp"
 #include "emax/app/store/saved_state.hpp"
 #include "emax/identify/frequency_response.hpp"
 
 namespace emax::app {
+
+/// Flag of a row whose setting *LRN? tells: its query answers in one piece.
+inline constexpr std::uint8_t kLearned = scpi::kFirstOwnFlag;
 
 /// Handlers take the instrument that they act on and the call.
 struct InstrumentCommands {
@@ -54,6 +58,10 @@ struct InstrumentCommands {
   static void clear(Instrument& i, Call& call) noexcept;
   static void operation_complete(Instrument& i, Call& call) noexcept;
   static void wait(Instrument& i, Call& call) noexcept;
+  static void options(Instrument& i, Call& call) noexcept;
+  static void learn(Instrument& i, Call& call) noexcept;
+  static void capability(Instrument& i, Call& call) noexcept;
+  static void headers(Instrument& i, Call& call) noexcept;
 
   // Slots
 
@@ -76,8 +84,21 @@ struct InstrumentCommands {
   // Points
 
   static std::size_t point_count(const Instrument& i) noexcept;
-  static void answer_point(const Instrument& i, std::size_t index, scpi::Response& out) noexcept;
+  static const ResponsePoint& point_at(const Instrument& i, std::size_t index) noexcept;
+  /// With the common part.
+  static double total_u_amplitude(const Instrument& i, std::size_t index) noexcept;
+  /// @param[in] factor Of the uncertainties: 1, or the coverage factor.
+  static void answer_point(const Instrument& i, std::size_t index, double factor,
+                           scpi::Response& out) noexcept;
+  /// @returns 0 if the query waits or has failed.
+  static std::size_t points_to_fetch(Instrument& i, Call& call) noexcept;
   static void fetch(Instrument& i, Call& call) noexcept;
+  static void fetch_trace(Instrument& i, Call& call) noexcept;
+  static void fetch_json(Instrument& i, Call& call) noexcept;
+  static void read(Instrument& i, Call& call) noexcept;
+  static double common_percent(const Instrument& i) noexcept;
+  static void common_part(Instrument& i, Call& call) noexcept;
+  static bool split_common(const Instrument& i, double percent, FrequencyResponse& points) noexcept;
   static void add_points(Instrument& i, Call& call) noexcept;
 
   /// @returns What is wrong with the point; null if it was added.
@@ -111,8 +132,10 @@ struct InstrumentCommands {
   static void answer_impulse(Instrument& i, Call& call) noexcept;
   static void monte_carlo(Instrument& i, Call& call) noexcept;
   static void trend(Instrument& i, Call& call) noexcept;
+  static void trend_times(Instrument& i, Call& call) noexcept;
   static bool take_trend(Instrument& i, Call& call) noexcept;
   static void report_text(Instrument& i, Call& call) noexcept;
+  static void answer_text(Span<const char> text, Call& call) noexcept;
 
   // Diagnosis
 

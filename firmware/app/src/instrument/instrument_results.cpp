@@ -1,6 +1,7 @@
 // The commands that answer what was measured or computed, and see to it that it is.
 #include <limits>
 
+#include "emax/app/points/reference_uncertainty.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
@@ -16,6 +17,8 @@ constexpr double kCoverageFactor = 2.0;
 constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = 1e300;
 constexpr double kMaxPhase_deg = 360.0;
+constexpr double kPercent = 100.0;
+constexpr double kMaxCommonPercent = 50.0;
 constexpr std::int64_t kMaxRandom = 1'000'000;
 constexpr std::size_t kPointFields = 5;
 constexpr NumberRule kAnyNumber = {-kHuge, kHuge, kNoDefault, nullptr};
@@ -45,35 +48,116 @@ std::size_t InstrumentCommands::point_count(const Instrument& i) noexcept {
                                                 : work.points().size();
 }
 
-void InstrumentCommands::answer_point(const Instrument& i, std::size_t index,
+const ResponsePoint& InstrumentCommands::point_at(const Instrument& i, std::size_t index) noexcept {
+  const Sequencer& work = i.sequencer();
+  return work.points_origin() == Origin::kSweep ? work.sweep().points()[index].point
+                                                : work.points().points()[index];
+}
+
+double InstrumentCommands::total_u_amplitude(const Instrument& i, std::size_t index) noexcept {
+  const Sequencer& work = i.sequencer();
+  const bool is_swept = work.points_origin() == Origin::kSweep;
+  const ResponsePoint& point = point_at(i, index);
+  const double common =
+      (is_swept ? work.sweep().common.total : work.points().common()[index]) * point.amplitude;
+  return sqrt(point.u_amplitude * point.u_amplitude + common * common);
+}
+
+void InstrumentCommands::answer_point(const Instrument& i, std::size_t index, double factor,
                                       scpi::Response& out) noexcept {
-  const SweepResults& sweep = i.sequencer().sweep();
-  const bool is_swept = i.sequencer().points_origin() == Origin::kSweep;
-  const ResponsePoint& point =
-      is_swept ? sweep.points()[index].point : i.sequencer().points().points()[index];
-  const double common = is_swept ? sweep.common.total * point.amplitude : 0.0;
+  const ResponsePoint& point = point_at(i, index);
   out.number(point.frequency_hz).number(point.amplitude);
   out.number(point.phase_rad * kDegreesPerRadian);
-  out.number(sqrt(point.u_amplitude * point.u_amplitude + common * common));
-  out.number(point.u_phase_rad * kDegreesPerRadian);
+  out.number(factor * total_u_amplitude(i, index));
+  out.number(factor * (point.u_phase_rad * kDegreesPerRadian));
 }
 
 void InstrumentCommands::fetch(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
-    answer_point(i, call.item(), call.answer());
+    answer_point(i, call.item(), 1.0, call.answer());
     return;
   }
+  const std::size_t count = points_to_fetch(i, call);
+  if (count > 0) {
+    call.answer().integer(static_cast<std::int64_t>(count));
+    call.answer_items(count);
+  }
+}
+
+void InstrumentCommands::fetch_trace(Instrument& i, Call& call) noexcept {
+  if (call.stage() == Call::Stage::kItem) {
+    answer_point(i, call.item(), kCoverageFactor, call.answer());
+    return;
+  }
+  call.answer_items(points_to_fetch(i, call));
+}
+
+// As SCPI-99 has it: ABORt, INITiate, FETCh?.
+void InstrumentCommands::read(Instrument& i, Call& call) noexcept {
+  if (call.stage() == Call::Stage::kStart) {
+    i.abort_command();
+    report(i.initiate_sweep(), call);
+  }
+  if (!call.failed()) {
+    fetch(i, call);
+  }
+}
+
+std::size_t InstrumentCommands::points_to_fetch(Instrument& i, Call& call) noexcept {
   if (i.is_sweeping()) {
     call.wait();
-    return;
+    return 0;
   }
   const std::size_t count = point_count(i);
   if (count == 0) {
     call.fail(ErrorCode::kDataCorruptOrStale, "no points: INIT:SWE or TRAC:FRES:DATA");
+  }
+  return count;
+}
+
+double InstrumentCommands::common_percent(const Instrument& i) noexcept {
+  const Sequencer& work = i.sequencer();
+  return work.points_origin() == Origin::kSweep
+             ? kCoverageFactor * kPercent * work.sweep().common.total
+             : i.common_percent();
+}
+
+// Of points that are there already, the uncertainties stay what they are in all.
+void InstrumentCommands::common_part(Instrument& i, Call& call) noexcept {
+  double percent = 0.0;
+  if (!call.setting({0.0, kMaxCommonPercent, 0.0, scpi::kPercent}, common_percent(i), percent)) {
     return;
   }
-  call.answer().integer(static_cast<std::int64_t>(count));
-  call.answer_items(count);
+  if (const ErrorWords words = i.conflict_with(Part::kDevice)) {
+    report(words, call);
+    return;
+  }
+  Sequencer& work = i.sequencer();
+  if (work.points_origin() == Origin::kSweep) {
+    call.fail(ErrorCode::kSettingsConflict, "points of a sweep: TRAC:FRES:CLE first");
+    return;
+  }
+  FrequencyResponse& points = work.borrow<FrequencyResponse>();
+  if (work.points().size() > 0 && !split_common(i, percent, points)) {
+    call.fail(ErrorCode::kDataOutOfRange, "a point has a smaller U(A)");
+    return;
+  }
+  i.set_common_percent(percent);
+  if (work.points().size() > 0) {
+    report(i.take(points), call);
+  }
+}
+
+/// The points with all of their uncertainty, and then with this common part apart from it.
+bool InstrumentCommands::split_common(const Instrument& i, double percent,
+                                      FrequencyResponse& points) noexcept {
+  points.clear();
+  for (std::size_t k = 0; k < i.sequencer().points().size(); ++k) {
+    ResponsePoint point = i.sequencer().points().points()[k];
+    point.u_amplitude = total_u_amplitude(i, k);
+    (void)points.add(point);
+  }
+  return remove_common(points, percent).status == Status::kOk;
 }
 
 void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
@@ -92,7 +176,10 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
   }
   // All of them or none.
   FrequencyResponse& grown = work.borrow<FrequencyResponse>();
-  grown = work.points();
+  grown.clear();
+  if (work.points().size() > 0) {
+    (void)split_common(i, 0.0, grown);
+  }
   while (call.has_more()) {
     double numbers[kPointFields] = {};
     for (std::size_t field = 0; field < kPointFields; ++field) {
@@ -104,6 +191,10 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
       call.fail(ErrorCode::kDataOutOfRange, problem);
       return;
     }
+  }
+  if (remove_common(grown, i.common_percent()).status != Status::kOk) {
+    call.fail(ErrorCode::kDataOutOfRange, "U(A) must be above CALC:REF:UNC");
+    return;
   }
   report(i.take(grown), call);
 }
@@ -393,6 +484,19 @@ void InstrumentCommands::trend(Instrument& i, Call& call) noexcept {
   call.answer_items(results_of(i).trend_points().size());
 }
 
+void InstrumentCommands::trend_times(Instrument& i, Call& call) noexcept {
+  if (!call.is_query()) {
+    (void)take_trend(i, call);
+    return;
+  }
+  if (i.settings().trend_count == 0) {
+    call.answer().number(kNoDefault);
+  }
+  for (std::size_t k = 0; k < i.settings().trend_count; ++k) {
+    call.answer().number(i.settings().trend_s[k]);
+  }
+}
+
 bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
   Settings next = i.settings();
   next.trend_s = {};
@@ -405,17 +509,70 @@ bool InstrumentCommands::take_trend(Instrument& i, Call& call) noexcept {
   return !call.failed();
 }
 
+namespace {
+
+/// What a report is headed with: a view of the message.
+struct GivenLabels {
+  Span<const char> text[5];
+  std::size_t count = 0;
+};
+
+bool take_labels(scpi::Call& call, GivenLabels& labels) noexcept {
+  while (call.has_more()) {
+    if (!call.string(labels.text[labels.count])) {
+      return false;
+    }
+    ++labels.count;
+  }
+  return true;
+}
+
+/// Puts a label with a zero behind it to the front of the memory; doubled quotes are one.
+const char* keep_label(Span<const char> text, Span<char>& memory) noexcept {
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    memory[size++] = text[k];
+    const bool is_quote = text[k] == '"' || text[k] == '\'';
+    k += is_quote && k + 1 < text.size() && text[k + 1] == text[k] ? 1U : 0U;
+  }
+  memory[size] = '\0';
+  const char* const label = memory.data();
+  memory = memory.from(size + 1);
+  return size > 0 ? label : nullptr;
+}
+
+}  // namespace
+
 void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
-  if (!i.provide(call, Goal::kReport)) {
+  GivenLabels given;
+  if (!take_labels(call, given) || !i.provide(call, Goal::kReport)) {
     return;
   }
   if (i.is_working()) {
     call.wait();
     return;
   }
-  const Span<const char> text = i.render_report();
+  Span<char> memory = i.sequencer().borrow_all();
+  Labels labels;
+  const char** const all[] = {&labels.device, &labels.serial, &labels.operated_by, &labels.date,
+                              &labels.note};
+  for (std::size_t k = 0; k < given.count; ++k) {
+    *all[k] = keep_label(given.text[k], memory);
+  }
+  answer_text(i.render_report(labels, memory), call);
+}
+
+void InstrumentCommands::fetch_json(Instrument& i, Call& call) noexcept {
+  if (i.is_working()) {
+    call.wait();
+    return;
+  }
+  answer_text(i.render_json(), call);
+}
+
+void InstrumentCommands::answer_text(Span<const char> text, Call& call) noexcept {
   if (text.empty()) {
-    call.fail(ErrorCode::kOutOfMemory, "the report is too long");
+    call.fail(ErrorCode::kOutOfMemory, "the text is too long");
     return;
   }
   call.answer().block(text);
@@ -423,11 +580,16 @@ void InstrumentCommands::report_text(Instrument& i, Call& call) noexcept {
 
 void InstrumentCommands::random(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
+    if (i.was_aborted()) {
+      call.fail(ErrorCode::kExecutionError, "aborted");
+      return;
+    }
     call.answer().number(i.next_random());
     return;
   }
   std::int64_t count = 0;
   if (call.integer({1, kMaxRandom, 1}, count)) {
+    i.begin_answer();
     call.answer_items(static_cast<std::size_t>(count));
   }
 }

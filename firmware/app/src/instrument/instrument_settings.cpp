@@ -212,6 +212,10 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
     seed(i, call);
     return;
   }
+  if (field.kind == SettingKind::kNumbers || field.kind == SettingKind::kMoreNumbers) {
+    trend_times(i, call);
+    return;
+  }
   SettingValue value;
   if (!SettingCall(call, command, field, &i.settings())
            .take(number_in(field, &kDefaultSettings), value)) {
@@ -305,8 +309,11 @@ void InstrumentCommands::reference_table(Instrument& i, Call& call) noexcept {
   }
   std::array<double, 2 * kMaxReferencePoints> pairs = {};
   std::size_t count = 0;
-  if (!call.numbers({ranges::kSmallest, ranges::kLargest, kNoDefault, nullptr}, Span<double>(pairs),
-                    count)) {
+  if (!call.numbers({0.0, ranges::kLargest, kNoDefault, nullptr}, Span<double>(pairs), count)) {
+    return;
+  }
+  if (count == 2 && pairs[0] == 0.0) {
+    take_reference(i, call, {pairs[1], current.expanded_percent});
     return;
   }
   if (count % 2 != 0 || count < 4) {

@@ -13,11 +13,6 @@ using scpi::ErrorCode;
 constexpr ErrorWords kRunning = {ErrorCode::kInitIgnored, "running: ABOR or *WAI first"};
 constexpr ErrorWords kAborted = {ErrorCode::kExecutionError, "aborted"};
 
-/// Of a report: twice the longest that the tests have.
-struct Text {
-  char characters[std::size_t{24} * 1024];
-};
-
 /// Text into memory.
 class MemorySink final : public TextSink {
  public:
@@ -102,6 +97,8 @@ ErrorWords Instrument::initiate_sweep() noexcept {
     return words_of(refusal, sequencer_);
   }
   change_device();
+  is_fit_kept_ = false;
+  warns_of_sweep_ = true;
   begin_work(scpi::kMeasuring | scpi::kSweeping);
   is_background_ = true;
   return {};
@@ -110,7 +107,7 @@ ErrorWords Instrument::initiate_sweep() noexcept {
 void Instrument::end_sweep() noexcept {
   const Refusal& failure = sequencer_.failure();
   if (!failure) {
-    is_fit_kept_ = false;
+    warns_of_sweep_ = false;
     return;
   }
   const ErrorWords words = words_of(failure, sequencer_);
@@ -158,7 +155,15 @@ void Instrument::show_fit_quality() noexcept {
   }
   const WlspFit& fit = sequencer_.evaluation().fit.result();
   const bool is_poor = fit.chi2 / fit.dof > reduced_chi_square_limit(fit.dof);
-  session_.status().questionable().set_condition(is_poor ? scpi::kQuestionableCalibration : 0);
+  const bool is_early =
+      sequencer_.origin() == Origin::kSweep && sequencer_.sweep().status != Status::kOk;
+  const int fault = is_early ? questionable_of(sequencer_.sweep().status) : 0;
+  const int poor = is_poor ? scpi::kQuestionableCalibration : 0;
+  session_.status().questionable().set_condition(static_cast<std::uint16_t>(fault | poor));
+  if (is_early && warns_of_sweep_) {
+    warns_of_sweep_ = false;
+    session_.status().report(ErrorCode::kDataCorruptOrStale, "fit of a sweep that ended early");
+  }
 }
 
 // Queries
@@ -239,13 +244,29 @@ bool Instrument::can_begin(Call& call) noexcept {
   return true;
 }
 
-Span<const char> Instrument::render_report() noexcept {
+Span<const char> Instrument::render_report(const Labels& labels, Span<char> memory) noexcept {
   const Measurement measurement = {sequencer_.sweep(), ports_.analog.format(), board_.simulated};
   ReportContext context;
+  context.labels = labels;
   context.measurement = sequencer_.origin() == Origin::kSweep ? &measurement : nullptr;
-  MemorySink sink{Span<char>(sequencer_.borrow<Text>().characters)};
+  MemorySink sink(memory);
   TextWriter out(sink);
   write_report(sequencer_.evaluation(), context, out);
+  return sink.text();
+}
+
+Span<const char> Instrument::render_json() noexcept {
+  const Measurement measurement = {sequencer_.sweep(), ports_.analog.format(), board_.simulated};
+  const bool is_swept = sequencer_.points_origin() == Origin::kSweep;
+  const auto holds = [this](Goal goal) noexcept { return sequencer_.holds(goal, settings_); };
+  const InstrumentState state = {sequencer_.evaluation(),   is_swept ? &measurement : nullptr,
+                                 sequencer_.points(),       holds(Goal::kModel),
+                                 holds(Goal::kEnergy),      holds(Goal::kBand),
+                                 holds(Goal::kUncertainty), holds(Goal::kMonteCarlo),
+                                 holds(Goal::kTrend)};
+  MemorySink sink(sequencer_.borrow_all());
+  TextWriter out(sink);
+  write_instrument_json(state, out);
   return sink.text();
 }
 

@@ -74,7 +74,7 @@ constexpr auto setting_handlers(std::index_sequence<kIndices...> /*indices*/) no
 constexpr std::uint8_t flags_of(SettingKind kind) noexcept {
   const bool is_number = kind == SettingKind::kNumber || kind == SettingKind::kWhole ||
                          kind == SettingKind::kNumberOrWord;
-  return is_number ? scpi::kQueryLimits : scpi::kPlain;
+  return static_cast<std::uint8_t>((is_number ? scpi::kQueryLimits : scpi::kPlain) | kLearned);
 }
 
 /// A command table under construction: parts in the order in which they are listed.

@@ -2,8 +2,10 @@
 #include "emax/app/base/json_writer.hpp"
 #include "emax/app/base/version.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/settings/setting_field.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/status.hpp"
+#include "emax/base/units.hpp"
 
 #include "report_parts.hpp"
 #include "report_warnings.hpp"
@@ -480,7 +482,185 @@ void write_head(const Labels& labels, JsonWriter& json) noexcept {
   json.close();
 }
 
+// For a front end
+
+void write_point(const ResponsePoint& point, double common, JsonWriter& json) noexcept {
+  const double shared = common * point.amplitude;
+  json.open(nullptr);
+  json.number("f_hz", point.frequency_hz);
+  json.number("amplitude", point.amplitude);
+  json.number("phase_deg", point.phase_rad * kDegreesPerRadian);
+  json.number("u_amplitude",
+              kCoverageFactor * sqrt(point.u_amplitude * point.u_amplitude + shared * shared));
+  json.number("u_phase_deg", kCoverageFactor * point.u_phase_rad * kDegreesPerRadian);
+  json.close();
+}
+
+void write_points(const InstrumentState& state, JsonWriter& json) noexcept {
+  json.open("points", '[');
+  if (state.measurement != nullptr) {
+    for (const SweepPoint& point : state.measurement->sweep.points()) {
+      write_point(point.point, state.measurement->sweep.common.total, json);
+    }
+  } else {
+    for (std::size_t i = 0; i < state.points.size(); ++i) {
+      write_point(state.points.points()[i], state.points.common()[i], json);
+    }
+  }
+  json.close(']');
+}
+
+void write_row(const char* name, Span<const double> values, JsonWriter& json) noexcept {
+  json.open_row(name);
+  for (const double value : values) {
+    json.number(nullptr, value);
+  }
+  json.close_row();
+}
+
+void write_sweep_settings(const SweepSettings& settings, JsonWriter& json) noexcept {
+  json.open("settings");
+  std::size_t count = 0;  // Of the list of before, which the next one may share.
+  for (const SettingField& field : fields_of(settings)) {
+    switch (field.kind) {
+      case SettingKind::kNumbers:
+        count = member_at<std::size_t>(&settings, field.beside);
+        [[fallthrough]];
+      case SettingKind::kMoreNumbers:
+        write_row(field.name,
+                  Span<const double>(&member_at<double>(&settings, field.offset), count), json);
+        break;
+      case SettingKind::kNumber:
+      case SettingKind::kWhole:
+        json.number(field.name, number_in(field, &settings));
+        break;
+      case SettingKind::kSwitch:
+      case SettingKind::kChoice:
+      case SettingKind::kNumberOrWord:
+      case SettingKind::kWholes:
+        break;  // No setting of a sweep is one.
+    }
+  }
+  json.close();
+}
+
+void write_silence(const SilentChannel& channel, JsonWriter& json) noexcept {
+  json.open_row(nullptr);
+  json.number(nullptr, channel.offset_v);
+  json.number(nullptr, channel.drift_v);
+  json.number(nullptr, channel.noise_v);
+  for (const double hum_v : channel.hum_v) {
+    json.number(nullptr, hum_v);
+  }
+  json.close_row();
+}
+
+void write_sweep_rows(const SweepResults& sweep, JsonWriter& json) noexcept {
+  json.open("rows", '[');
+  for (const SweepPoint& point : sweep.points()) {
+    const double row[] = {point.point.phase_rad,
+                          point.point.u_amplitude,
+                          point.point.u_phase_rad,
+                          point.acceleration_mps2,
+                          point.drive_v,
+                          point.residual_percent,
+                          point.flagged ? 1.0 : 0.0,
+                          point.scatters ? 1.0 : 0.0};
+    write_row(nullptr, row, json);
+  }
+  json.close(']');
+}
+
+void write_sweep(const Measurement* measurement, JsonWriter& json) noexcept {
+  if (measurement == nullptr) {
+    json.null("sweep");
+    return;
+  }
+  const SweepResults& sweep = measurement->sweep;
+  json.open("sweep");
+  json.integer("status", static_cast<std::uint64_t>(sweep.status));
+  json.integer("stage", static_cast<std::uint64_t>(sweep.stage));
+  write_sweep_settings(sweep.settings, json);
+  write_sweep_rows(sweep, json);
+  json.open("silence", '[');
+  write_silence(sweep.inputs.silent_reference, json);
+  write_silence(sweep.inputs.silent_device, json);
+  json.close(']');
+  const double check[] = {sweep.check_before.re, sweep.check_before.im, sweep.check_after.re,
+                          sweep.check_after.im};
+  write_row("check", check, json);
+  const double noise[] = {sweep.noise.reference_v, sweep.noise.device_v,
+                          static_cast<double>(sweep.noise.dof)};
+  write_row("noise", noise, json);
+  json.close();
+}
+
+void write_error_system(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (!state.has_model) {
+    json.null("filter");
+    json.null("impulse_response");
+    return;
+  }
+  write_filter(state.evaluation, json);
+  write_impulse_response(state.evaluation, json);
+}
+
+void write_energies(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (state.has_energy) {
+    write_energy(state.evaluation, json);
+  } else {
+    json.null("energy");
+  }
+  if (state.has_band) {
+    write_band(state.evaluation, json);
+    write_ideal(state.evaluation, json);
+  } else {
+    json.null("band");
+    json.null("ideal");
+  }
+}
+
+void write_trials(const InstrumentState& state, JsonWriter& json) noexcept {
+  if (state.has_uncertainty) {
+    write_uncertainty(state.evaluation, json);
+  } else {
+    json.null("uncertainty");
+  }
+  if (state.has_trials) {
+    write_monte_carlo(state.evaluation, json);
+  } else {
+    json.null("monte_carlo");
+  }
+  if (state.has_trend) {
+    write_trend(state.evaluation, json);
+  } else {
+    json.null("trend");
+  }
+}
+
 }  // namespace
+
+void write_instrument_json(const InstrumentState& state, TextWriter& out) noexcept {
+  ReportContext context;
+  context.measurement = state.measurement;
+  JsonWriter json(out);
+  json.open(nullptr);
+  write_head(context.labels, json);
+  write_points(state, json);
+  write_sweep(state.measurement, json);
+  if (state.has_model) {
+    write_model(state.evaluation, context, json);
+  } else {
+    json.null("model");
+  }
+  write_bench(state.measurement, nullptr, json);
+  write_error_system(state, json);
+  write_energies(state, json);
+  write_trials(state, json);
+  json.boolean("simulated", is_simulated(context));
+  json.close();
+  out.line();
+}
 
 void write_json(const EvaluationResults& results, const ReportContext& context,
                 TextWriter& out) noexcept {

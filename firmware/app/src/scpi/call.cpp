@@ -326,41 +326,6 @@ bool Call::string(Span<const char>& text) noexcept {
   return true;
 }
 
-bool Call::block(Span<const char>& bytes) noexcept {
-  Span<const char> element;
-  if (!take(element)) {
-    return false;
-  }
-  const Kind kind = kind_of(element);
-  if (kind != Kind::kBlock) {
-    return refuse(element, not_allowed(kind));
-  }
-  const auto digits = static_cast<std::size_t>(element[1] - '0');
-  Span<const char> rest = element.from(2);
-  if (digits == 0) {
-    bytes = rest;
-    return true;
-  }
-  std::size_t length = 0;
-  for (std::size_t i = 0; i < digits; ++i) {
-    if (rest.empty() || !is_digit(rest[0])) {
-      return refuse(element, ErrorCode::kInvalidBlockData);
-    }
-    length = length * 10 + static_cast<std::size_t>(rest[0] - '0');
-    rest = rest.from(1);
-  }
-  if (length > rest.size()) {
-    return refuse(element, ErrorCode::kInvalidBlockData);
-  }
-  for (const char c : rest.from(length)) {
-    if (!is_blank(c)) {
-      return refuse(element, ErrorCode::kInvalidBlockData);
-    }
-  }
-  bytes = rest.first(length);
-  return true;
-}
-
 /// MIN, MAX or DEF of a query.
 bool Call::take_limit(const NumberRule& rule, double& value) noexcept {
   constexpr const char* kWords[] = {"MINimum", "MAXimum", "DEFault"};

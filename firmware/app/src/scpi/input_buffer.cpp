@@ -6,16 +6,14 @@
 namespace emax::app::scpi {
 
 MessageScanner::Event MessageScanner::next(char byte) noexcept {
-  if (state_ == State::kBlock) {
-    --block_length_;
-    state_ = block_length_ == 0 ? State::kInElement : State::kBlock;
-    return Event::kMore;
-  }
   if (is_line_end(byte)) {
     *this = {};
     return Event::kEnd;
   }
-  if (state_ == State::kIndefinite) {
+  if (state_ == State::kHash && is_digit(byte)) {
+    state_ = State::kBlock;
+  }
+  if (state_ == State::kBlock) {
     return Event::kMore;
   }
   if (!is_printable(byte) && !is_blank(byte)) {
@@ -29,20 +27,12 @@ MessageScanner::Event MessageScanner::next(char byte) noexcept {
     state_ = State::kString;
     return Event::kMore;
   }
-  if (state_ == State::kHash && is_digit(byte)) {
-    begin_block(byte);
-    return Event::kMore;
-  }
-  if (state_ == State::kBlockDigits && is_digit(byte)) {
-    add_length_digit(byte);
-    return Event::kMore;
-  }
   return next_of_text(byte);
 }
 
 MessageScanner::Event MessageScanner::next_of_text(char byte) noexcept {
   if (byte == ';') {
-    state_ = State::kBeforeHeader;
+    *this = {};
     return Event::kUnitEnd;
   }
   if (is_blank(byte)) {
@@ -53,31 +43,24 @@ MessageScanner::Event MessageScanner::next_of_text(char byte) noexcept {
     state_ = State::kHeader;
     return Event::kMore;
   }
-  if (byte == ',') {
+  return next_of_element(byte);
+}
+
+MessageScanner::Event MessageScanner::next_of_element(char byte) noexcept {
+  if (byte == '(') {
+    ++parentheses_;
+  } else if (byte == ')' && parentheses_ > 0) {
+    --parentheses_;
+  } else if (parentheses_ == 0 && byte == ',') {
     state_ = State::kElement;
     return Event::kSeparator;
-  }
-  if (state_ == State::kElement && (byte == '"' || byte == '\'')) {
+  } else if (state_ == State::kElement && (byte == '"' || byte == '\'')) {
     quote_ = byte;
     state_ = State::kString;
     return Event::kMore;
   }
   state_ = state_ == State::kElement && byte == '#' ? State::kHash : State::kInElement;
   return Event::kMore;
-}
-
-void MessageScanner::begin_block(char byte) noexcept {
-  digits_ = static_cast<std::uint8_t>(byte - '0');
-  block_length_ = 0;
-  state_ = digits_ == 0 ? State::kIndefinite : State::kBlockDigits;
-}
-
-void MessageScanner::add_length_digit(char byte) noexcept {
-  block_length_ = block_length_ * 10 + static_cast<std::uint32_t>(byte - '0');
-  --digits_;
-  if (digits_ == 0) {
-    state_ = block_length_ == 0 ? State::kInElement : State::kBlock;
-  }
 }
 
 std::size_t InputBuffer::room() const noexcept {
@@ -107,7 +90,7 @@ void InputBuffer::take(char byte) noexcept {
     }
     return;
   }
-  if (length + 1 + scanner_.block_bytes_left() > kCapacity) {
+  if (length + 1 > kCapacity) {
     // An empty message, which is never kept otherwise, stands for it.
     size_ = complete_;
     end_message();

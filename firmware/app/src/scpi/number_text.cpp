@@ -40,7 +40,7 @@ class Cursor {
   void skip() noexcept { text_ = text_.from(1); }
   bool skip_blanks() noexcept {
     const std::size_t before = text_.size();
-    while (is_blank(peek())) {
+    while (!at_end() && is_blank(peek())) {
       skip();
     }
     return text_.size() != before;
@@ -125,6 +125,28 @@ bool equals(Span<const char> text, const char* word) noexcept {
   return word[i] == '\0';
 }
 
+/// As it is, or with the quotient as a product: "M.S-2" for "M/S2", "V.S-1" for "V/S".
+bool is_unit(Span<const char> text, const char* unit) noexcept {
+  if (equals(text, unit)) {
+    return true;
+  }
+  std::size_t i = 0;
+  while (unit[i] != '\0' && unit[i] != '/') {
+    ++i;
+  }
+  if (unit[i] == '\0' || text.size() != i + 4) {
+    return false;
+  }
+  const char power = unit[i + 2] == '\0' ? '1' : unit[i + 2];
+  for (std::size_t k = 0; k < i; ++k) {
+    if (upper(text[k]) != unit[k]) {
+      return false;
+    }
+  }
+  return text[i] == '.' && upper(text[i + 1]) == unit[i + 1] && text[i + 2] == '-' &&
+         text[i + 3] == power;
+}
+
 bool starts_with(Span<const char> text, const char* word, std::size_t& length) noexcept {
   for (length = 0; word[length] != '\0'; ++length) {
     if (length >= text.size() || upper(text[length]) != word[length]) {
@@ -147,7 +169,7 @@ Scale scale_of(Span<const char> suffix, const char* unit) noexcept {
   if (suffix.size() > kMaxSuffix) {
     return {0, ErrorCode::kSuffixTooLong};
   }
-  if (equals(suffix, unit)) {
+  if (is_unit(suffix, unit)) {
     return {};
   }
   // MHZ is mega, as everybody writes it.
@@ -156,7 +178,7 @@ Scale scale_of(Span<const char> suffix, const char* unit) noexcept {
   }
   for (const Multiplier& multiplier : kMultipliers) {
     std::size_t length = 0;
-    if (starts_with(suffix, multiplier.name, length) && equals(suffix.from(length), unit)) {
+    if (starts_with(suffix, multiplier.name, length) && is_unit(suffix.from(length), unit)) {
       return {multiplier.exponent, ErrorCode::kNoError};
     }
   }

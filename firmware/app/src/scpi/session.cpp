@@ -16,7 +16,7 @@ Span<const char> last_characters(Span<const char> text) noexcept {
 }  // namespace
 
 void Session::power_on() noexcept {
-  clear();
+  forget_peer();
   status_.power_on();
 }
 
@@ -31,7 +31,7 @@ bool Session::is_deadlocked() const noexcept {
 }
 
 void Session::break_deadlock() noexcept {
-  response_.clear();
+  response_.drop_unsent();
   if (overtaking_.stage != Stage::kNone) {
     overtaking_.has_queries = false;
     end_message(overtaking_);
@@ -42,11 +42,16 @@ void Session::break_deadlock() noexcept {
 }
 
 void Session::clear() noexcept {
-  response_.clear();
+  response_.drop_unsent();
   input_.clear();
   main_ = {};
   overtaking_ = {};
   looked_at_ = 0;
+}
+
+void Session::forget_peer() noexcept {
+  clear();
+  response_.clear();
 }
 
 bool Session::start_message() noexcept {
@@ -91,9 +96,12 @@ bool Session::can_call(const Message& message) const noexcept {
   return !response_.holds_block() && response_.room() > room_needed(message);
 }
 
-bool Session::has_room_for(std::size_t overtaking_queries) const noexcept {
+bool Session::may_answer(std::size_t overtaking_queries) const noexcept {
   if (overtaking_queries == 0) {
     return true;
+  }
+  if (main_.stage != Stage::kWaiting) {
+    return false;
   }
   const std::size_t needed = overtaking_queries * (Response::kImmediateRoom + 1) + 1;
   return overtaking_queries <= kMaxOvertakingQueries && !response_.is_open() &&
@@ -122,7 +130,8 @@ void Session::reject(Message& message, ErrorCode error, Span<const char> offende
 Call Session::begin_call(const Message& message) noexcept {
   using CallStage = Call::Stage;
   const bool is_item = message.stage == Stage::kItems;
-  const bool message_available = !response_.empty();
+  // An answer of this message may have gone out already, all but its line feed.
+  const bool message_available = !response_.empty() || response_.is_open();
   if (!message.is_query) {
     response_.begin_item(0);
   } else if (is_item) {

@@ -82,6 +82,21 @@ void next_error(Call& call) noexcept {
   call.answer().error(entry);
 }
 
+void all_errors(Call& call) noexcept {
+  if (call.stage() != Call::Stage::kItem) {
+    const std::size_t count = call.status().errors().size();
+    call.answer_items(count > 0 ? count : 1);
+    return;
+  }
+  next_error(call);
+}
+
+void all_codes(Call& call) noexcept {
+  do {
+    call.answer().integer(static_cast<std::int16_t>(call.status().take_error().code));
+  } while (!call.status().errors().empty());
+}
+
 void error_count(Call& call) noexcept {
   call.answer().integer(static_cast<std::int64_t>(call.status().errors().size()));
 }

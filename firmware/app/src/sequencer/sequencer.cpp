@@ -24,6 +24,14 @@ void Sequencer::take(const FrequencyResponse& points) noexcept {
   origin_ = Origin::kTable;
 }
 
+void Sequencer::take(const SweepResults& sweep) noexcept {
+  sweep_ = sweep;
+  (void)sweep_.copy_to(points_);
+  has_identification_ = false;
+  points_origin_ = Origin::kSweep;
+  origin_ = Origin::kSweep;
+}
+
 void Sequencer::give_damping(double damping) noexcept {
   evaluation_.clear();
   evaluation_.fit.give_damping(damping);
@@ -113,11 +121,11 @@ Refusal Sequencer::measure_and_evaluate(hal::AnalogStream& stream, const SweepSe
 
 void Sequencer::end_sweep() noexcept {
   job_ = Job::kNone;
+  (void)sweep_.copy_to(points_);  // A sweep that is done has points that a table takes.
   if (sweep_.status != Status::kOk) {
     failure_ = {Obstacle::kSweep, sweep_.status};
     return;
   }
-  (void)sweep_.copy_to(points_);  // A sweep that is done has points that a table takes.
   if (evaluates_next_) {
     const Refusal refusal = evaluate(evaluation_.settings, goal_);
     failure_ = refusal ? refusal : failure_;
@@ -248,6 +256,7 @@ void Sequencer::step() noexcept {
 void Sequencer::abort() noexcept {
   if (job_ == Job::kSweep) {
     sweep_run().stop();
+    (void)sweep_.copy_to(points_);
   }
   if (job_ == Job::kEvaluation) {
     evaluation_run().stop();

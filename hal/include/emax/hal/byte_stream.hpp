@@ -36,6 +36,14 @@ class ByteStream {
   ///          at its greatest value instead of starting over.
   std::uint32_t take_lost_count() noexcept { return do_take_lost_count(); }
 
+  /// @returns True if the line had a break since this was last asked: device clear. What came in
+  ///          before it is not to be read any more.
+  bool take_break() noexcept { return do_take_break(); }
+
+  /// @returns True where who reads is not who sends, as with pipes: a reader that pauses holds up
+  ///          nothing but its own answers, and none of them may be dropped.
+  bool waits_for_reader() const noexcept { return do_waits_for_reader(); }
+
  protected:
   constexpr ByteStream() noexcept = default;
   ~ByteStream() = default;
@@ -49,6 +57,8 @@ class ByteStream {
 
   virtual bool do_connected() const noexcept = 0;
   virtual std::uint32_t do_take_lost_count() noexcept = 0;
+  virtual bool do_take_break() noexcept { return false; }
+  virtual bool do_waits_for_reader() const noexcept { return false; }
 };
 
 }  // namespace emax::hal

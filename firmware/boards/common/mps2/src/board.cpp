@@ -38,8 +38,10 @@ static_assert(kWatchdogPeriod_us <= 0xFFFFFFFF / kCyclesPer_us);
 
 [[gnu::section(".store")]] std::uint8_t records[kStoreFormat.slot_count * kStoreFormat.slot_bytes];
 
+ConsoleRings console_rings;
+
 struct Hardware {
-  CmsdkUart console{kUart0, kUart0TransmitInterrupt};
+  CmsdkUart console{kUart0, kUart0TransmitInterrupt, console_rings};
   CmsdkClock clock{kTimer1, kCyclesPer_us};
   CmsdkWatchdog watchdog{kWatchdog, kCyclesPer_us, kWatchdogPeriod_us};
   RamStore store{kStoreFormat, records};

@@ -8,6 +8,7 @@
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/instrument/error_words.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report_context.hpp"
 #include "emax/app/scpi/call.hpp"
 #include "emax/app/scpi/command.hpp"
 #include "emax/app/scpi/session.hpp"
@@ -83,6 +84,9 @@ class Instrument {
   /// Does a short piece of everything.
   void poll() noexcept;
 
+  /// Does its part of the console alone: what runs stays where it is.
+  void converse() noexcept;
+
   /// As ABORt: ends what runs, with the drive at zero. What is complete stays.
   void abort() noexcept;
 
@@ -91,6 +95,8 @@ class Instrument {
   bool is_sweeping() const noexcept { return sequencer_.job() == Job::kSweep; }
   /// @returns False if the next `poll()` has nothing to do but to look for bytes.
   bool is_busy() const noexcept { return is_working() || has_acted_; }
+  /// @returns True if the last call took or handed over characters, or executed something.
+  bool is_conversing() const noexcept { return has_acted_; }
   /// @returns True if all that came in was executed and all answers were handed over. Work in the
   /// background may go on.
   bool is_settled() const noexcept { return session_.is_idle(); }
@@ -106,11 +112,10 @@ class Instrument {
   /// Lends memory for their polynomials: as `Evaluation::lend_trial_pieces()`.
   void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { sequencer_.lend_trial_pieces(pieces); }
 
-  /// @returns The table that parser and documentation share.
-  static scpi::Table<Instrument> commands() noexcept;
-  /// @returns What each of them does, in their order: lines that end in a zero byte, one behind the
-  /// other. The table itself has none of them.
-  static const char* command_descriptions() noexcept;
+  /// @returns All commands with their texts, for documentation.
+  static Span<const scpi::Command<Instrument>> commands() noexcept;
+  /// @returns The same for the parser.
+  static scpi::Table<Instrument> rows() noexcept;
 
   // What the commands are made of. Where words are answered, they say why nothing was done.
 
@@ -132,6 +137,15 @@ class Instrument {
   ErrorWords take(const Device& device) noexcept;
   ErrorWords take(const FrequencyResponse& points) noexcept;
   ErrorWords clear_points() noexcept;
+
+  /// ABORt: what runs ends, and so does an answer that is made as long as it is read.
+  void abort_command() noexcept {
+    was_aborted_ = true;
+    abort();
+  }
+  /// A query that goes on and on begins; then whether ABORt came since.
+  void begin_answer() noexcept { was_aborted_ = false; }
+  bool was_aborted() const noexcept { return was_aborted_; }
 
   /// *RST: as after power on, but for what the store holds.
   void reset() noexcept;
@@ -164,13 +178,23 @@ class Instrument {
   /// While nothing runs.
   ///
   /// @returns Nothing if the report is longer than the memory. Valid until something runs.
-  Span<const char> render_report() noexcept;
+  ///
+  /// @param[in] memory Of the sequencer; `labels` may be in front of it.
+  Span<const char> render_report(const Labels& labels, Span<char> memory) noexcept;
+  /// The same of FETCh:JSON?.
+  Span<const char> render_json() noexcept;
+
+  /// The common part of points from elsewhere, expanded, in percent.
+  double common_percent() const noexcept { return common_percent_; }
+  void set_common_percent(double percent) noexcept { common_percent_ = percent; }
 
   /// Bit of STATus:OPERation: an evaluation or a fixed point runs.
   static constexpr std::uint16_t kComputing = 1u << 8;
 
  private:
   void follow_peer() noexcept;
+  void end_query() noexcept;
+  void clear_device() noexcept;
   void receive() noexcept;
   void execute() noexcept;
   void send() noexcept;
@@ -195,9 +219,11 @@ class Instrument {
   SweepSettings sweep_settings_;
   WichmannHill generator_;
   std::uint64_t deadlock_since_us_ = 0;
-  bool is_fit_kept_ = false;    // The fit of these points is in the store.
-  bool is_background_ = false;  // The job was begun by INITiate.
-  bool is_query_job_ = false;   // The query under way has begun the job that runs or has ended.
+  double common_percent_ = 0.0;
+  bool is_fit_kept_ = false;     // The fit of these points is in the store.
+  bool warns_of_sweep_ = false;  // A sweep that did not come to a good end; its fit is a warning.
+  bool is_background_ = false;   // The job was begun by INITiate.
+  bool is_query_job_ = false;    // The query under way has begun the job that runs or has ended.
   bool was_aborted_ = false;
   bool completes_operation_ = false;  // *OPC waits for the job.
   bool was_connected_ = false;

@@ -7,6 +7,7 @@
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report_context.hpp"
+#include "emax/identify/frequency_response.hpp"
 
 namespace emax::app {
 
@@ -40,6 +41,33 @@ void write_report(const EvaluationResults& results, const ReportContext& context
 /// @param[in] context    As for the report.
 void write_json(const EvaluationResults& results, const ReportContext& context,
                 TextWriter& out) noexcept;
+
+/// What an instrument has at the moment. Refers to what it describes; made for one call.
+struct InstrumentState {
+  const EvaluationResults& evaluation;
+  const Measurement* measurement;  ///< Null if the points were not measured here.
+  const FrequencyResponse& points;
+  bool has_model;  ///< And so on: whether this result is there, and that of the device of now.
+  bool has_energy;
+  bool has_band;
+  bool has_uncertainty;
+  bool has_trials;
+  bool has_trend;
+};
+
+/// Writes what there is, with the objects of results.json, null for the rest; and before them
+///
+/// * `points`: objects of f_hz, amplitude, phase_deg, u_amplitude, u_phase_deg, with expanded total
+///   uncertainties (k = 2).
+/// * `sweep`, with a measurement: what a front end needs to go on with it as if it were its own,
+/// all
+///   numbers to the last bit. `status` and `stage` as the instrument counts them; `settings` by
+///   their names; a row of `rows` is phase in rad, u of the amplitude and of the phase in rad (each
+///   without the common part, standard), peak acceleration, peak drive, residual in percent, 1 if
+///   flagged, 1 if it scatters; `silence` has offset, drift, noise and hum of either channel;
+///   `check` the complex ratios before and after; `noise` both channels' and its degrees of
+///   freedom.
+void write_instrument_json(const InstrumentState& state, TextWriter& out) noexcept;
 
 /// Writes the report of points that determine the sensitivity alone: there is no energy.
 ///

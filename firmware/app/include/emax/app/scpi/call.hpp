@@ -12,6 +12,7 @@
 namespace emax::app::scpi {
 
 /// Units of numbers. Multipliers (EX PE T G MA K M U N P F A) may stand before them; MHZ is mega.
+/// A quotient may be written as a product, too: "M.S-2" for "M/S2" (IEEE 488.2, 7.7.3).
 inline constexpr const char kHertz[] = "HZ";
 inline constexpr const char kSecond[] = "S";
 inline constexpr const char kVolt[] = "V";
@@ -92,8 +93,6 @@ class Call {
   bool numbers(const NumberRule& rule, Span<double> values, std::size_t& count) noexcept;
   /// The text of a string without its quotes, doubled ones still doubled: a view of the input.
   bool string(Span<const char>& text) noexcept;
-  /// The bytes of a definite or indefinite block: a view of the input.
-  bool block(Span<const char>& bytes) noexcept;
 
   /// A setting with both forms: a query is answered with `current` (or, where the row has
   /// kQueryLimits and MIN, MAX or DEF was given, with that); otherwise the new value is read.

@@ -37,21 +37,61 @@ struct Command {
 
   constexpr bool has_set() const noexcept { return forms != Forms::kQuery; }
   constexpr bool has_query() const noexcept { return forms != Forms::kSet; }
+};
+
+/// What the parser needs of a command: no texts for people, and its parameters counted beforehand.
+template <typename Context>
+struct Row {
+  static constexpr std::uint8_t kAny = 0xFF;  ///< Parameters without end.
+
+  const char* pattern;
+  void (*handler)(Context& context, Call& call);
+  Forms forms;
+  std::uint8_t flags;
+  std::uint8_t min_parameters;  ///< Those of the query if there is no other form.
+  std::uint8_t max_parameters;
+
+  constexpr bool has_set() const noexcept { return forms != Forms::kQuery; }
+  constexpr bool has_query() const noexcept { return forms != Forms::kSet; }
   constexpr bool is_immediate() const noexcept { return (flags & kImmediate) != 0; }
 
   /// How many parameters the form takes.
   constexpr Arity arity(bool is_query) const noexcept {
-    if (!is_query || forms == Forms::kQuery) {
-      return arity_of(parameters);
+    Arity arity;
+    if (is_query && forms == Forms::kSetAndQuery) {
+      arity.max = (flags & kQueryLimits) != 0 ? 1 : 0;
+      return arity;
     }
-    Arity limits;
-    limits.max = (flags & kQueryLimits) != 0 ? 1 : 0;
-    return limits;
+    arity.min = min_parameters;
+    arity.max = max_parameters == kAny ? kAnyCount : max_parameters;
+    return arity;
   }
 };
 
 template <typename Context>
-using Table = Span<const Command<Context>>;
+using Table = Span<const Row<Context>>;
+
+template <typename Context, std::size_t kRows>
+struct Rows {
+  Row<Context> rows[kRows] = {};
+};
+
+/// @returns The parser's part of a table, in its order.
+template <typename Context, std::size_t kRows>
+constexpr Rows<Context, kRows> rows_of(const Command<Context> (&table)[kRows]) noexcept {
+  Rows<Context, kRows> all;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const Arity arity = arity_of(table[i].parameters);
+    const bool is_any = arity.max == kAnyCount;
+    all.rows[i] = {table[i].pattern,
+                   table[i].handler,
+                   table[i].forms,
+                   table[i].flags,
+                   static_cast<std::uint8_t>(arity.min),
+                   is_any ? Row<Context>::kAny : static_cast<std::uint8_t>(arity.max)};
+  }
+  return all;
+}
 
 constexpr bool is_pattern_letter(char c) noexcept {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');

@@ -11,9 +11,9 @@ namespace emax::app::scpi {
 
 /// Finds the ends of program messages and of their parts, one byte at a time.
 ///
-/// LF or CR ends a message, but not inside a block with a stated length. A string ends with its
-/// line even if its closing quote is missing: a lost quote must not swallow what comes next, such
-/// as ABORt.
+/// LF or CR ends a message, whatever it is made of: a lost quote or a stray '#' must not swallow
+/// what comes next, such as ABORt. A '#' with a digit begins a block, which goes on to the end of
+/// the message and may hold any other byte. Commas inside parentheses are part of one parameter.
 class MessageScanner {
  public:
   enum class Event : std::uint8_t {
@@ -34,33 +34,25 @@ class MessageScanner {
   }
 
   Event next(char byte) noexcept;
-  /// @returns Bytes of a block that are still to come; 0 outside of blocks.
-  std::uint32_t block_bytes_left() const noexcept {
-    return state_ == State::kBlock ? block_length_ : 0;
-  }
 
  private:
   enum class State : std::uint8_t {
     kBeforeHeader,
     kHeader,
-    kElement,      ///< Where a parameter may begin.
-    kInElement,    ///< Inside a number or a word, or behind a string or a block.
-    kString,       ///< Inside quotes.
-    kQuote,        ///< After a quote that may be the first of two.
-    kHash,         ///< After '#'.
-    kBlockDigits,  ///< In the digits that say how long the block is.
-    kBlock,        ///< Inside a block of stated length.
-    kIndefinite,   ///< Inside a block that ends with the message.
+    kElement,    ///< Where a parameter may begin.
+    kInElement,  ///< Inside a number or a word, or behind a string.
+    kString,     ///< Inside quotes.
+    kQuote,      ///< After a quote that may be the first of two.
+    kHash,       ///< After '#'.
+    kBlock,      ///< Inside a block, up to the end of the message.
   };
 
   Event next_of_text(char byte) noexcept;
-  void begin_block(char byte) noexcept;
-  void add_length_digit(char byte) noexcept;
+  Event next_of_element(char byte) noexcept;
 
   State state_ = State::kBeforeHeader;
   char quote_ = '\0';
-  std::uint8_t digits_ = 0;
-  std::uint32_t block_length_ = 0;
+  std::uint16_t parentheses_ = 0;  ///< That are open.
 };
 
 /// A complete message in the input.

@@ -23,8 +23,10 @@ class Response {
   /// What the answer of an immediate command may take at most.
   static constexpr std::size_t kImmediateRoom = 128;
 
-  /// printf's %.17g; infinities are 9.9E37 and -9.9E37, a NaN is 9.91E37 (SCPI-99, 7.2.1). At
-  /// most 24 characters. Stack below 0.8 KiB.
+  /// The fewest digits that read back as this number: from 1 on as they are, "42" or "4072.97",
+  /// below 1 and beyond 17 places with an exponent, "1.0E-1" (IEEE 488.2, 8.7.2 to 8.7.4).
+  /// Infinities are 9.9E37 and -9.9E37, a NaN is 9.91E37 (SCPI-99, 7.2.1). At most 24 characters.
+  /// Stack below 1.1 KiB.
   Response& number(double value) noexcept;
   Response& integer(std::int64_t value) noexcept;
   Response& boolean(bool value) noexcept { return integer(value ? 1 : 0); }
@@ -46,6 +48,9 @@ class Response {
   Response& block_header(std::size_t length) noexcept;
   /// Characters without a separator before them.
   Response& piece(Span<const char> characters) noexcept;
+  Response& piece(const char* characters) noexcept;
+  /// The next field follows without a separator.
+  void join() noexcept { joins_ = true; }
 
   /// @returns The characters that wait, as far as they are in one piece; empty if none do.
   Span<const char> pending() const noexcept;
@@ -71,11 +76,16 @@ class Response {
   bool fits() const noexcept { return fits_; }
   /// Ends the message by a line feed if it has answers.
   void end_message() noexcept;
+  /// Forgets what was not sent. Of an answer that was sent in part, the line ends here: the next
+  /// one must not look like its rest.
+  void drop_unsent() noexcept;
+  /// Forgets all, for a new peer.
   void clear() noexcept;
   bool consistent() const noexcept;
 
  private:
   void put(const char* characters, std::size_t count) noexcept;
+  void put_number(std::uint64_t value) noexcept;
   void put_quoted(Span<const char> text) noexcept;
   void put_quoted(const char* text) noexcept;
   void separate() noexcept;
@@ -91,7 +101,9 @@ class Response {
   bool has_field_ = false;
   bool had_field_ = false;
   bool had_block_ = false;
+  bool joins_ = false;
   bool fits_ = true;
+  bool line_is_open_ = false;  ///< The last character that was sent is no line feed.
 };
 
 static_assert(std::is_trivially_copyable_v<Response>);

@@ -20,8 +20,9 @@ namespace emax::app::scpi {
 ///
 /// While a unit waits (see `Call::wait()`) or an answer is not read, later messages stay where they
 /// are, except those of at most 256 characters all of whose units are immediate: they overtake. One
-/// that has queries overtakes only if it has at most three of them and no answer is under way, so
-/// that answers are never mixed. Of "ABOR;*RST" the immediate front overtakes, and the rest stays.
+/// that has queries overtakes only a unit that waits, and only if it has at most three of them and
+/// no answer is under way: answers are never mixed, and come in the order of their queries as long
+/// as nothing is waited for. Of "ABOR;*RST" the immediate front overtakes, and the rest stays.
 ///
 /// After a command error (-1xx) the rest of its message is dropped; after any other error it goes
 /// on with the next unit. A message with a byte that belongs into none is -101, one that is longer
@@ -73,8 +74,11 @@ class Session {
   /// -430: drops the answers and what is left of the message that made them, as IEEE 488.2 has it.
   void break_deadlock() noexcept;
 
-  /// Device clear, for a new peer: forgets input, output and what waits. Status and errors stay.
+  /// Device clear: forgets input, output and what waits. Status and errors stay. A line that was
+  /// sent in part is ended.
   void clear() noexcept;
+  /// The same for a new peer, who has seen nothing of that line.
+  void forget_peer() noexcept;
 
   /// @returns False only if memory was overwritten: for tests.
   bool consistent() const noexcept;
@@ -133,7 +137,7 @@ class Session {
   bool is_overtaking(const Message& message) const noexcept { return &message == &overtaking_; }
   std::size_t room_needed(const Message& message) const noexcept;
   bool can_call(const Message& message) const noexcept;
-  bool has_room_for(std::size_t overtaking_queries) const noexcept;
+  bool may_answer(std::size_t overtaking_queries) const noexcept;
   void accept(Message& message, const ProgramUnit& unit, const Found& found) noexcept;
   void reject(Message& message, ErrorCode error, Span<const char> offender) noexcept;
   Call begin_call(const Message& message) noexcept;
@@ -278,7 +282,7 @@ std::size_t Session::overtaking_length(Table<Context> table, Span<const char> te
     path = found.path;
     queries += unit.is_query ? 1U : 0U;
   }
-  return has_room_for(queries) ? text.size() : 0;
+  return may_answer(queries) ? text.size() : 0;
 }
 
 }  // namespace emax::app::scpi

@@ -23,6 +23,8 @@ void status_byte(Call& call) noexcept;     ///< *STB?
 
 void next_error(Call& call) noexcept;   ///< SYSTem:ERRor[:NEXT]?
 void error_count(Call& call) noexcept;  ///< SYSTem:ERRor:COUNt?
+void all_errors(Call& call) noexcept;   ///< SYSTem:ERRor:ALL?, not immediate.
+void all_codes(Call& call) noexcept;    ///< SYSTem:ERRor:CODE:ALL?
 void version(Call& call) noexcept;      ///< SYSTem:VERSion?, 1999.0
 
 void status_preset(Call& call) noexcept;           ///< STATus:PRESet

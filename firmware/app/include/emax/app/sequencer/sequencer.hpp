@@ -87,6 +87,8 @@ class Sequencer {
   void take(const Identification& identification) noexcept;
   /// The device that these points give.
   void take(const FrequencyResponse& points) noexcept;
+  /// The device that another instrument has measured: a sweep that is `done()`.
+  void take(const SweepResults& sweep) noexcept;
   /// The device that the points at hand give, in place of one by its parameters.
   ///
   /// @returns Whether that is a change.
@@ -142,8 +144,8 @@ class Sequencer {
     return is_of_device() && evaluation_.holds(goal, settings);
   }
   Origin origin() const noexcept { return origin_; }
-  /// Of a sweep that runs, or has ended in any way, or was handed over. Measured points are there
-  /// also where the sweep has failed, and then they are not in `points()`.
+  /// Of a sweep that runs, or has ended in any way, or was handed over. What was measured before a
+  /// sweep failed is in `points()`, too.
   Origin points_origin() const noexcept { return points_origin_; }
   const SweepResults& sweep() const noexcept { return sweep_; }
   const EvaluationResults& evaluation() const noexcept { return evaluation_; }
@@ -166,6 +168,12 @@ class Sequencer {
   void lend_trial_store(Span<double> store) noexcept { trial_store_ = store; }
   /// The same for `Evaluation::lend_trial_pieces()`.
   void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { trial_pieces_ = pieces; }
+
+  /// All of the memory that `borrow()` lends, for text. 66 KiB on a board.
+  Span<char> borrow_all() noexcept {
+    has_fixed_point_ = false;
+    return {static_cast<char*>(static_cast<void*>(&workspace_)), sizeof workspace_};
+  }
 
   /// Memory for somebody else's work while nothing runs; anything may be in it.
   template <typename Work>

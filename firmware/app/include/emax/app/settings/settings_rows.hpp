@@ -143,7 +143,8 @@ inline constexpr SettingRow kSettingRows[] = {
         .as_option({nullptr, "T1,T2,...|none", "none or 2 to 16 numbers of seconds",
                     "2 to 16 lengths in s, with the straight line through\n"
                     "their energies",
-                    "0.002,0.004,0.006,0.008,0.010"}),
+                    "0.002,0.004,0.006,0.008,0.010"})
+        .as_command("CALCulate:TRENd:TIME", "<T1>,...", "2 to 16 lengths for the trend"),
 };
 
 static_assert(members_in(kSettingRows) == member_count<Settings>(), "a member without a row");

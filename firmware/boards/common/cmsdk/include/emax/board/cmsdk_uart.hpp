@@ -16,8 +16,10 @@ class CmsdkUart final : public hal::ByteStream {
  public:
   /// @param[in] base Of its registers.
   /// @param[in] transmit_interrupt Its number, for `write()` to trigger.
-  constexpr CmsdkUart(std::uintptr_t base, unsigned transmit_interrupt) noexcept
-      : base_(base), transmit_interrupt_(transmit_interrupt) {}
+  /// @param[in] rings Its alone, and not inside: they are zero before use, so they take no flash.
+  constexpr CmsdkUart(std::uintptr_t base, unsigned transmit_interrupt,
+                      ConsoleRings& rings) noexcept
+      : base_(base), transmit_interrupt_(transmit_interrupt), rings_(rings) {}
 
   /// Switches both directions on. @param[in] baud At most clock_hz/16.
   void start(std::uint32_t clock_hz, std::uint32_t baud) noexcept;
@@ -43,7 +45,7 @@ class CmsdkUart final : public hal::ByteStream {
 
   const std::uintptr_t base_;
   const unsigned transmit_interrupt_;
-  ConsoleRings rings_;
+  ConsoleRings& rings_;
 };
 
 }  // namespace emax::board

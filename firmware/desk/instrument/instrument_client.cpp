@@ -1,0 +1,273 @@
+// The conversation with an instrument.
+#include "desk/instrument/instrument_client.hpp"
+
+#include <cstdlib>
+
+#include "emax/app/settings/sweep_settings_rows.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/cli/setting_options.hpp"
+#include "desk/cli/stop_request.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+using Duration = InstrumentPort::Duration;
+
+// The longest step of an instrument takes 50 ms, and a report line by serial line some seconds.
+constexpr Duration kPatience{10'000};
+// Long enough for the drive to come to zero.
+constexpr Duration kStopPatience{2'000};
+constexpr Duration kBetweenLooks{100};
+constexpr std::size_t kLongestLine = 65'536;
+constexpr int kGreetingLines = 16;
+constexpr unsigned kBusyBits = 0x118;  // Sweeping, measuring, computing.
+constexpr unsigned kSweepBits = 0x018;
+constexpr const char* kNoError = "0,\"No error\"";
+
+std::string number_text(double value) {
+  StringSink sink;
+  app::TextWriter writer(sink);
+  writer.exact(value);
+  return sink.text();
+}
+
+// "[SENSe:]SWEep:CYCLes" as it may be sent.
+std::string header_of(const app::SettingRow& row) {
+  std::string header;
+  for (const char* c = row.command.header; *c != '\0'; ++c) {
+    header += *c == '[' || *c == ']' ? "" : std::string(1, *c);
+  }
+  return ":" + header;
+}
+
+bool is_list(const app::SettingField& field) {
+  return field.kind == app::SettingKind::kNumbers || field.kind == app::SettingKind::kMoreNumbers;
+}
+
+std::string frequencies_of(const app::SweepSettings& sweep) {
+  std::string list;
+  for (std::size_t i = 0; i < sweep.frequency_count; ++i) {
+    list += (i > 0 ? "," : "") + number_text(sweep.frequency_hz[i]);
+  }
+  return list;
+}
+
+}  // namespace
+
+Problem InstrumentClient::problem_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kOk:
+      return {};
+    case Outcome::kStopped:
+      return stop();
+    case Outcome::kTimeout:
+      return fault("--instrument: " + printable(port_.name()) +
+                   ": no answer for 10 s; check cable, baud rate and power" +
+                   (is_sweeping_ ? ", and send ABORt: its sweep may still run" : ""));
+    case Outcome::kLost:
+      break;
+  }
+  return fault("--instrument: " + printable(port_.name()) +
+               ": the connection was closed; another client may be connected" +
+               (is_sweeping_ ? ", and the sweep may still run: ABORt ends it" : ""));
+}
+
+Problem InstrumentClient::send(const std::string& line) {
+  return problem_of(port_.write(line + "\n", kPatience, true));
+}
+
+// Until so many bytes are there.
+Problem InstrumentClient::read_until(std::size_t count) {
+  while (input_.size() < count) {
+    if (Problem problem = problem_of(port_.read(input_, kPatience, true))) {
+      return problem;
+    }
+  }
+  return {};
+}
+
+Problem InstrumentClient::read_line(std::string& line) {
+  std::size_t end = input_.find('\n');
+  while (end == std::string::npos) {
+    if (input_.size() > kLongestLine) {
+      return fault("--instrument: " + printable(port_.name()) + ": answers without an end");
+    }
+    if (Problem problem = read_until(input_.size() + 1)) {
+      return problem;
+    }
+    end = input_.find('\n');
+  }
+  line = input_.substr(0, end);
+  input_.erase(0, end + 1);
+  if (!line.empty() && line.back() == '\r') {
+    line.pop_back();
+  }
+  return {};
+}
+
+Problem InstrumentClient::ask(const std::string& query, std::string& line) {
+  const Problem problem = send(query);
+  return problem ? problem : read_line(line);
+}
+
+Problem InstrumentClient::ask_block(const std::string& query, std::string& content) {
+  if (Problem problem = send(query)) {
+    return problem;
+  }
+  if (Problem problem = read_until(2)) {
+    return problem;
+  }
+  const int digits = input_[1] - '0';
+  if (input_[0] != '#' || digits < 1 || digits > 9) {
+    return fault("--instrument: " + printable(port_.name()) + ": " + query +
+                 " was not answered with a block; expected an emax of this version");
+  }
+  const std::size_t head = 2 + static_cast<std::size_t>(digits);
+  if (Problem problem = read_until(head)) {
+    return problem;
+  }
+  const std::size_t length = std::strtoul(input_.substr(2, head - 2).c_str(), nullptr, 10);
+  if (Problem problem = read_until(head + length)) {
+    return problem;
+  }
+  content = input_.substr(head, length);
+  input_.erase(0, head + length);
+  std::string rest;
+  return read_line(rest);
+}
+
+Problem InstrumentClient::open(const std::string& port) {
+  if (Problem problem = port_.open(port)) {
+    return problem;
+  }
+  return greet();
+}
+
+// A device clear ends what somebody has left half said; its answer may begin with the end of a line
+// that was sent in part.
+Problem InstrumentClient::greet() {
+  if (Problem problem = send("\x03*IDN?;:STAT:OPER:COND?")) {
+    return problem;
+  }
+  std::string line;
+  for (int i = 0; i < kGreetingLines && line.compare(0, 5, "emax,") != 0; ++i) {
+    if (Problem problem = read_line(line)) {
+      return problem;
+    }
+  }
+  const std::size_t end = line.rfind(';');
+  if (line.compare(0, 5, "emax,") != 0 || end == std::string::npos) {
+    return fault("--instrument: " + printable(port_.name()) + ": answers \"" +
+                 printable(line.substr(0, 60)) + "\" to *IDN?; expected an emax");
+  }
+  if ((std::strtoul(line.c_str() + end + 1, nullptr, 10) & kBusyBits) != 0) {
+    return fault("--instrument: " + printable(port_.name()) +
+                 ": it is at work already; wait for its end, or send ABORt");
+  }
+  return {};
+}
+
+Problem InstrumentClient::set(const std::string& command, const std::string& option) {
+  std::string error;
+  if (Problem problem = ask(command + ";:SYST:ERR?", error)) {
+    return problem;
+  }
+  if (error == kNoError) {
+    return {};
+  }
+  return bad_input(option + ": the instrument refuses " + command.substr(0, 60) + ": " +
+                   printable(error));
+}
+
+Problem InstrumentClient::set_up(const app::SweepSettings& sweep) {
+  const app::SweepSettings defaults = app::default_sweep_settings();
+  if (Problem problem = set("*RST;*CLS", "--instrument")) {
+    return problem;
+  }
+  if (sweep.frequency_count != defaults.frequency_count ||
+      sweep.frequency_hz != defaults.frequency_hz) {
+    if (Problem problem = set(":SENS:SWE:FREQ " + frequencies_of(sweep), "--frequencies")) {
+      return problem;
+    }
+  }
+  const app::ReferenceCalibration& reference = sweep.reference;
+  if (reference.sensitivity[0] != defaults.reference.sensitivity[0] ||
+      reference.expanded_percent != defaults.reference.expanded_percent) {
+    if (Problem problem = set(":SENS:REF:SENS " + number_text(reference.sensitivity[0]) + "," +
+                                  number_text(reference.expanded_percent),
+                              "--reference-uncertainty")) {
+      return problem;
+    }
+  }
+  for (const app::SettingRow& row : app::kSweepSettingRows) {
+    if (row.option.name == nullptr || is_list(row.field) || is_same(row.field, &sweep, &defaults)) {
+      continue;
+    }
+    const std::string option = std::string("--") + row.option.name;
+    if (row.command.header == nullptr) {
+      return bad_input(option + ": no command sets it at an instrument; leave it out");
+    }
+    if (Problem problem =
+            set(header_of(row) + " " + number_text(number_in(row.field, &sweep)), option)) {
+      return problem;
+    }
+  }
+  return {};
+}
+
+Problem InstrumentClient::measure(ConsoleProgress& progress) {
+  is_sweeping_ = true;
+  if (Problem problem = set(":INIT", "--instrument")) {
+    return problem;
+  }
+  for (;;) {
+    std::string line;
+    if (Problem problem = ask(":SYST:PROG?;:STAT:OPER:COND?", line)) {
+      return problem;
+    }
+    const std::size_t end = line.rfind(';');
+    const char* const condition = end != std::string::npos ? line.c_str() + end + 1 : "0";
+    if ((std::strtoul(condition, nullptr, 10) & kSweepBits) == 0) {
+      is_sweeping_ = false;
+      return {};
+    }
+    progress.show("sweep of the instrument,", std::strtod(line.c_str(), nullptr) / 100.0);
+    const Outcome outcome = port_.read(input_, kBetweenLooks, true);
+    if (outcome != Outcome::kOk && outcome != Outcome::kTimeout) {
+      return problem_of(outcome);
+    }
+  }
+}
+
+// The instrument comes first: whether it has heard is said.
+Problem InstrumentClient::stop() {
+  if (!is_sweeping_) {
+    return stopped();
+  }
+  is_sweeping_ = false;
+  bool is_at_rest = port_.write(
+                        "\x03"
+                        "ABOR;*OPC?\n",
+                        kStopPatience, false) == Outcome::kOk;
+  input_.clear();
+  while (is_at_rest && input_.find("1\n") == std::string::npos) {
+    is_at_rest = port_.read(input_, kStopPatience, false) == Outcome::kOk;
+  }
+  return {ExitStatus::kStopped,
+          is_at_rest ? "stopped during the sweep of the instrument, which has led its drive to zero"
+                     : "stopped; ABORt WAS SENT BUT THE INSTRUMENT DOES NOT ANSWER"};
+}
+
+Problem InstrumentClient::fetch(InstrumentSweep& sweep) {
+  std::string json;
+  if (Problem problem = ask_block(":FETC:JSON?", json)) {
+    return problem;
+  }
+  const std::string wrong = read_instrument_sweep(json, sweep);
+  return wrong.empty() ? Problem{}
+                       : fault("--instrument: " + printable(port_.name()) + ": " + wrong);
+}
+
+}  // namespace emax::desk

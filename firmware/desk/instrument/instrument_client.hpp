@@ -1,0 +1,66 @@
+// The PC as the front end of an instrument: sets it up, has it measure, and fetches the sweep.
+#pragma once
+
+#include <string>
+
+#include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/report/measurement.hpp"
+#include "emax/hal/analog_stream.hpp"
+
+#include "desk/cli/console_progress.hpp"
+#include "desk/cli/options.hpp"
+#include "desk/cli/problem.hpp"
+#include "desk/instrument/instrument_port.hpp"
+
+namespace emax::desk {
+
+/// What an instrument has measured.
+struct InstrumentSweep {
+  app::SweepResults results;
+  hal::StreamFormat format;  ///< Its sample rate; no more is told.
+  bool is_simulated = false;
+  app::SimulatedBench simulated;  ///< If so.
+};
+
+/// Speaks SCPI with one instrument. Every answer has an end to its patience; a request to stop is
+/// heeded within a tenth of a second, and ends the sweep of the instrument first.
+class InstrumentClient final {
+ public:
+  /// Connects, and sees that an emax answers which has nothing else to do.
+  Problem open(const std::string& port);
+
+  /// Puts it into its defaults and sets what differs from the defaults of a report.
+  ///
+  /// @returns Bad input with its own words if it refuses a setting.
+  Problem set_up(const app::SweepSettings& sweep);
+
+  /// Has it measure, to the end or to a fault, which is in `status` of the results.
+  Problem measure(ConsoleProgress& progress);
+
+  /// Fetches what it has measured, with all its digits.
+  Problem fetch(InstrumentSweep& sweep);
+
+ private:
+  using Outcome = InstrumentPort::Outcome;
+
+  Problem greet();
+  Problem set(const std::string& command, const std::string& option);
+  Problem ask(const std::string& query, std::string& line);
+  Problem ask_block(const std::string& query, std::string& content);
+  Problem read_line(std::string& line);
+  Problem read_until(std::size_t count);
+  Problem send(const std::string& line);
+  Problem problem_of(Outcome outcome);
+  Problem stop();
+
+  InstrumentPort port_;
+  std::string input_;         // Read and not taken.
+  bool is_sweeping_ = false;  // INITiate was sent.
+};
+
+/// Reads the answer of FETCh:JSON?.
+///
+/// @returns What is wrong with it; empty if it was read.
+std::string read_instrument_sweep(const std::string& json, InstrumentSweep& sweep);
+
+}  // namespace emax::desk

@@ -1,0 +1,240 @@
+"""`emax report --instrument` as its user meets it: against `emax scpi` on a port and on a serial line, and against peers
+that go wrong.
+
+usage: test_instrument.py PROGRAM DATA_DIRECTORY [unittest arguments]
+"""
+
+import json
+import os
+import pty
+import re
+import select
+import signal
+import socket
+import subprocess
+import threading
+import time
+import tty
+
+from program_test import PROGRAM, QUICK, ProgramTest, main, restore_signals
+
+PATIENCE = 60.0  # Seconds that anything may take on a loaded machine.
+
+
+class TcpInstrument:
+    """`emax scpi --tcp 0`."""
+
+    def __init__(self, *arguments: str):
+        self.process = subprocess.Popen([PROGRAM, "scpi", "--tcp", "0", *arguments], stdin=subprocess.DEVNULL,
+                                        stderr=subprocess.PIPE, preexec_fn=restore_signals)
+        line = self.process.stderr.readline().decode()
+        self.port = re.search(r"([0-9.]+:\d+)\n$", line)[1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.communicate()
+
+    def ask(self, text: str) -> str:
+        host, port = self.port.rsplit(":", 1)
+        with socket.create_connection((host, int(port)), timeout=PATIENCE) as peer, peer.makefile("rb") as answers:
+            peer.sendall(text.encode() + b"\n")
+            return answers.readline().decode().rstrip("\n")
+
+
+class SerialInstrument:
+    """`emax scpi` behind a pseudo terminal, which stands for the serial line."""
+
+    def __init__(self, *arguments: str):
+        self.line, far_end = pty.openpty()
+        tty.setraw(self.line)
+        self.port = os.ttyname(far_end)
+        self.far_end = far_end  # Held open: the line is there before and after its peer.
+        self.process = subprocess.Popen([PROGRAM, "scpi", *arguments], stdin=self.line, stdout=self.line,
+                                        stderr=subprocess.DEVNULL, preexec_fn=restore_signals)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.communicate()
+        os.close(self.line)
+        os.close(self.far_end)
+
+
+class Peer:
+    """A server on a port that does with its one connection what it is told."""
+
+    def __init__(self, behave):
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = f"127.0.0.1:{self.listener.getsockname()[1]}"
+        self.thread = threading.Thread(target=self.serve, args=(behave,), daemon=True)
+        self.thread.start()
+
+    def serve(self, behave) -> None:
+        peer, _ = self.listener.accept()
+        with peer:
+            behave(peer)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.listener.close()
+        self.thread.join(PATIENCE)
+
+
+def answer_lines(answers: dict[bytes, bytes]):
+    """Answers each line that has one of these words with what belongs to it."""
+    def behave(peer: socket.socket) -> None:
+        with peer.makefile("rb") as lines:
+            for line in lines:
+                for word, answer in answers.items():
+                    if word in line:
+                        peer.sendall(answer)
+                        break
+    return behave
+
+
+class InstrumentSweeps(ProgramTest):
+    def expect_the_same(self, instrument, bench: list[str], options: list[str]) -> None:
+        """The first sweep of a bench that was just built is the one that `emax report` makes on it, digit for digit."""
+        with instrument(*bench) as remote:
+            got = self.succeed("report", "--instrument", remote.port, *options, *QUICK, "--json")
+        self.assertEqual(got, self.succeed("report", *bench, *options, *QUICK, "--json"))
+        self.assertEqual(json.loads(got)["bench"]["points"], 42)
+
+    def test_by_socket(self) -> None:
+        self.expect_the_same(TcpInstrument, [], [])
+
+    def test_by_socket_with_other_settings(self) -> None:
+        self.expect_the_same(TcpInstrument, ["--bench-seed", "7", "--bench-truth", "0.5,3000,0.4"],
+                             ["--level", "2", "--cycles", "4", "--settle", "0.02", "--acceleration-limit", "30",
+                              "--order", "7", "--time", "0.003"])
+
+    def test_by_serial_line(self) -> None:
+        self.expect_the_same(SerialInstrument, ["--bench-seed", "3"], [])
+
+    def test_files(self) -> None:
+        with TcpInstrument() as remote:
+            self.succeed("report", "--instrument", remote.port, *QUICK, "--out", "remote")
+        self.succeed("report", *QUICK, "--out", "local")
+        names = [name for name in self.files() if name.startswith("local/")]
+        self.assertIn("local/report.html", names)
+        for name in names:
+            other = name.replace("local", "remote")
+            self.assertEqual((self.directory / other).read_bytes(), (self.directory / name).read_bytes(), name)
+
+    def test_settings_of_before_do_not_count(self) -> None:
+        with TcpInstrument() as remote:
+            remote.ask("SOUR:LEV 5;:SENS:SWE:FREQ 100,200,300;:SYST:ERR?")
+            result = json.loads(self.succeed("report", "--instrument", remote.port, *QUICK, "--json"))
+        self.assertEqual((result["bench"]["level"], result["bench"]["points"]), (1, 42))
+
+
+class InstrumentFaults(ProgramTest):
+    def test_a_fault_of_its_sweep_keeps_what_was_measured(self) -> None:
+        bench = ["--bench-fault", "unplugged-device@4"]
+        with TcpInstrument(*bench) as remote:
+            got = self.run_program("report", "--instrument", remote.port, "--out", "remote")
+        expected = self.run_program("report", *bench, "--out", "local")
+        self.assertEqual((got.returncode, got.stdout, got.stderr), (3, expected.stdout, expected.stderr))
+        self.assertIn(b"15 of 42 points kept", got.stderr)
+        self.assertEqual((self.directory / "remote/frequency_response.csv").read_bytes(),
+                         (self.directory / "local/frequency_response.csv").read_bytes())
+
+    def test_a_setting_that_it_refuses(self) -> None:
+        with TcpInstrument() as remote:
+            self.refuse(["report", "--instrument", remote.port, "--level", "25"], "--level", "-221", "refuses")
+
+    def test_one_that_is_at_work(self) -> None:
+        with TcpInstrument("--pace", "1") as remote:
+            remote.ask("INIT;:SYST:ERR?")
+            self.refuse(["report", "--instrument", remote.port], "at work already", "ABORt", status=3)
+            self.assertEqual(remote.ask("STAT:OPER:COND?"), "24", "its sweep goes on")
+
+    def test_what_is_no_emax(self) -> None:
+        with Peer(answer_lines({b"*IDN": b"OTHER,1,2,3;0\n" * 20})) as peer:
+            self.refuse(["report", "--instrument", peer.port], "OTHER,1,2,3;0", "expected an emax", status=3)
+
+    def test_one_that_goes_away(self) -> None:
+        for answers in ({b"*IDN": b"emax,x,0,1;0\n"}, {b"*IDN": b"emax,x,0,1;0\n", b"RST": b'0,"No error"\n'}):
+            def behave(peer, answers=answers):
+                with peer.makefile("rb") as lines:
+                    for line in lines:
+                        word = [word for word in answers if word in line]
+                        if not word:
+                            return
+                        peer.sendall(answers[word[0]])
+            with Peer(behave) as peer:
+                self.refuse(["report", "--instrument", peer.port], "the connection was closed", status=3)
+
+    def test_one_that_does_not_answer(self) -> None:
+        with Peer(answer_lines({b"*IDN": b"emax,x,0,1;0\n"})) as peer:
+            self.refuse(["report", "--instrument", peer.port], "no answer for 10 s", status=3)
+
+    def test_one_whose_answer_is_no_sweep(self) -> None:
+        talk = {b"*IDN": b"emax,x,0,1;0\n", b"SYST:ERR": b'0,"No error"\n', b"PROG": b'100,"idle";0\n'}
+        for json_answer, words in ((b"#15{\"a\":\n", "no JSON"), (b"#12{}\n", "does not tell the setting"),
+                                   (b"1\n", "not answered with a block")):
+            with Peer(answer_lines(talk | {b"JSON": json_answer})) as peer:
+                self.refuse(["report", "--instrument", peer.port], words, status=3)
+
+    def test_ports_that_are_none(self) -> None:
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            port = free.getsockname()[1]
+        self.write(["not a line"], name="file")
+        for name in (f"127.0.0.1:{port}", "127.0.0.1", ":5025", "127.0.0.1:", "/dev/no-such-line", "/dev/null", "./file",
+                     "no-such-host.invalid:5025"):
+            self.refuse(["report", "--instrument", name], "--instrument: ", "expected HOST:PORT")
+
+    def test_options_that_exclude_each_other(self) -> None:
+        self.refuse(["report", "--instrument", "a:1", "--model", "1,4000,0.3"], "excludes --model")
+        self.refuse(["report", "--instrument", "a:1", "--points", "x.csv"], "excludes --points")
+        self.refuse(["report", "--instrument", "a:1", "--bench-seed", "2"], "--bench-seed", "simulated bench")
+
+
+class InstrumentStops(ProgramTest):
+    def test_ctrl_c_ends_the_sweep_of_the_instrument_first(self) -> None:
+        with TcpInstrument("--pace", "1") as remote:
+            process = self.start_program("report", "--instrument", remote.port, "--out", "out")
+            deadline = time.monotonic() + PATIENCE
+            # A second client is refused while the first one is there.
+            while time.monotonic() < deadline and remote.process.poll() is None:
+                time.sleep(0.5)
+                try:
+                    answer = remote.ask("STAT:OPER:COND?")
+                except ConnectionError:
+                    answer = ""
+                if answer == "":
+                    break
+            time.sleep(1.0)
+            process.send_signal(signal.SIGINT)
+            output, errors = process.communicate(timeout=PATIENCE)
+            self.assertEqual((process.returncode, output), (130, b""))
+            self.assert_one_line(errors, "stopped during the sweep of the instrument", "drive to zero")
+            self.assertEqual(remote.ask("STAT:OPER:COND?"), "0")
+            self.assertEqual(self.files(), ["out"] if (self.directory / "out").exists() else [])
+
+    def test_progress_on_a_terminal(self) -> None:
+        terminal, far_end = pty.openpty()
+        with TcpInstrument("--pace", "4") as remote:
+            process = self.start_program("report", "--instrument", remote.port, *QUICK, stderr=far_end)
+            os.close(far_end)
+            shown = b""
+            threading.Thread(target=process.stdout.read, daemon=True).start()
+            while select.select([terminal], [], [], PATIENCE)[0]:
+                try:
+                    shown += os.read(terminal, 4096)
+                except OSError:  # The program has ended.
+                    break
+            self.assertEqual(process.wait(timeout=PATIENCE), 0)
+        os.close(terminal)
+        self.assertRegex(shown.decode(), r"emax: sweep of the instrument, \d+ %, \d+ s")
+
+
+if __name__ == "__main__":
+    main()
