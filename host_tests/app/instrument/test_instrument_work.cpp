@@ -224,13 +224,14 @@ TEST(InstrumentQueries, AnswerWhatIsThereWhileOtherWorkRuns) {
 TEST(InstrumentQueries, EndWithoutAnAnswerOnAbort) {
   InstrumentBench i;
   (void)i.ask(kPaperModel);
-  i.console.send("CALC:MCAR?;*IDN?\nSYST:ERR?\n");
+  i.console.send("CALC:MCAR?;*IDN?\n");
   i.poll(20);
   EXPECT_TRUE(i.instrument->is_held());
   i.send("SYST:PROG?");
   i.poll(5);
   EXPECT_NE(i.console.receive().find(",\""), std::string::npos) << "that one overtakes";
   EXPECT_TRUE(i.instrument->is_held());
+  i.send("SYST:ERR?");
   i.send("ABOR");
   i.poll(10);
   EXPECT_FALSE(i.instrument->is_working());

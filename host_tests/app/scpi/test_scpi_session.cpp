@@ -270,11 +270,23 @@ TEST(ScpiSession, ImmediateCommandsOvertake) {
 TEST(ScpiSession, MixedMessagesDoNotOvertake) {
   ToyConsole console;
   EXPECT_EQ(console.ask("INIT;*OPC?\nSYST:PROG?;*IDN?\n;*IDN?;ABOR\nSTAT:OPER:ENAB 16;FOO\n"), "");
-  EXPECT_EQ(console.ask("STAT:OPER:ENAB?\n"), "0\n") << "what follows hangs on this path";
+  EXPECT_EQ(console.session.status().operation().enable(), 0) << "what follows hangs on this path";
   EXPECT_EQ(console.toy.log, "I");
   console.toy.is_busy = false;
   EXPECT_EQ(console.ask(""), std::string("1\n100;") + kIdentity + kIdentity);
   EXPECT_EQ(console.toy.log, "IA");
+}
+
+// The message that waits for a result is overtaken, other queries are not: who reads the next line
+// takes it for the answer to the first of them.
+TEST(ScpiSession, QueriesDoNotOvertakeOrdinaryQueries) {
+  ToyConsole console;
+  EXPECT_EQ(console.ask("INIT;*OPC?\n*RST\nSYST:PROG?\n"), "50\n");
+  EXPECT_EQ(console.ask("*IDN?\nSYST:PROG?\n"), "");
+  EXPECT_EQ(console.ask("*ESE 4\n"), "") << "without an answer it may";
+  EXPECT_EQ(console.session.status().event_enable(), 4);
+  console.toy.is_busy = false;
+  EXPECT_EQ(console.ask(""), std::string("1\n") + kIdentity + "100\n");
 }
 
 // Only what waits for a result is overtaken. Where answers wait for their reader, all come in the
@@ -322,8 +334,8 @@ TEST(ScpiSession, AnswersAreNotMixed) {
 
 TEST(ScpiSession, ThreeQueriesOvertakeAtMost) {
   ToyConsole console;
-  EXPECT_EQ(console.ask("INIT;*OPC?\n*STB?;*STB?;*STB?;*STB?\n"), "");
-  EXPECT_EQ(console.ask("*STB?;*STB?;*STB?\n"), "0;16;16\n");
+  EXPECT_EQ(console.ask("INIT;*OPC?\n*STB?;*STB?;*STB?\n"), "0;16;16\n");
+  EXPECT_EQ(console.ask("*STB?;*STB?;*STB?;*STB?\n"), "");
   EXPECT_EQ(console.ask("ABOR\n"), "1\n0;16;16;16\n");
 }
 

@@ -47,6 +47,7 @@ void Session::clear() noexcept {
   main_ = {};
   overtaking_ = {};
   looked_at_ = 0;
+  has_passed_query_ = false;
 }
 
 void Session::forget_peer() noexcept {
@@ -73,6 +74,7 @@ bool Session::start_message() noexcept {
   main_.length = static_cast<std::uint16_t>(message.text.size());
   main_.stage = Stage::kReady;
   looked_at_ = static_cast<std::uint16_t>(main_.length + 1);
+  has_passed_query_ = false;
   return true;
 }
 
@@ -81,6 +83,15 @@ void Session::start_overtaking(Span<const char> text) noexcept {
   overtaking_.begin = looked_at_;
   overtaking_.length = static_cast<std::uint16_t>(text.size());
   overtaking_.stage = Stage::kReady;
+}
+
+bool Session::has_query(Span<const char> text) noexcept {
+  for (const char c : text) {
+    if (c == '?') {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// What the answer may take, with the separator before it.
@@ -100,7 +111,7 @@ bool Session::may_answer(std::size_t overtaking_queries) const noexcept {
   if (overtaking_queries == 0) {
     return true;
   }
-  if (main_.stage != Stage::kWaiting) {
+  if (main_.stage != Stage::kWaiting || has_passed_query_) {
     return false;
   }
   const std::size_t needed = overtaking_queries * (Response::kImmediateRoom + 1) + 1;

@@ -20,9 +20,10 @@ namespace emax::app::scpi {
 ///
 /// While a unit waits (see `Call::wait()`) or an answer is not read, later messages stay where they
 /// are, except those of at most 256 characters all of whose units are immediate: they overtake. One
-/// that has queries overtakes only a unit that waits, and only if it has at most three of them and
-/// no answer is under way: answers are never mixed, and come in the order of their queries as long
-/// as nothing is waited for. Of "ABOR;*RST" the immediate front overtakes, and the rest stays.
+/// that has queries overtakes only the message with a unit that waits, never another one with
+/// queries, and only if it has at most three of them and no answer is under way: answers are never
+/// mixed, and come in the order of their queries but for the one that is waited for. Of "ABOR;*RST"
+/// the immediate front overtakes, and the rest stays.
 ///
 /// After a command error (-1xx) the rest of its message is dropped; after any other error it goes
 /// on with the next unit. A message with a byte that belongs into none is -101, one that is longer
@@ -132,6 +133,8 @@ class Session {
   template <typename Context>
   std::size_t overtaking_length(Table<Context> table, Span<const char> text) const noexcept;
 
+  /// @returns Whether the message may answer; a question mark inside of a string counts, too.
+  static bool has_query(Span<const char> text) noexcept;
   bool start_message() noexcept;
   void start_overtaking(Span<const char> text) noexcept;
   bool is_overtaking(const Message& message) const noexcept { return &message == &overtaking_; }
@@ -149,7 +152,8 @@ class Session {
   InputBuffer input_;
   Message main_;
   Message overtaking_;
-  std::uint16_t looked_at_ = 0;  ///< Messages before this offset stay in order.
+  std::uint16_t looked_at_ = 0;    ///< Messages before this offset stay in order.
+  bool has_passed_query_ = false;  ///< One of them has a query.
 };
 
 static_assert(std::is_trivially_copyable_v<Session>);
@@ -255,6 +259,7 @@ bool Session::look_ahead(Table<Context> table) noexcept {
   if (length > 0) {
     start_overtaking(message.text.first(length));
   } else {
+    has_passed_query_ = has_passed_query_ || has_query(message.text);
     looked_at_ = static_cast<std::uint16_t>(looked_at_ + message.text.size() + 1);
   }
   return true;
