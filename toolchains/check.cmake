@@ -79,6 +79,15 @@ file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
 # Of the sources of boards, those that the PC's tests build too.
 file(GLOB common RELATIVE ${PROJECT_SOURCE_DIR} host_tests/boards/test_*.cpp)
 list(TRANSFORM common REPLACE "host_tests/boards/test_(.*)" "firmware/boards/common/src/\\1")
+foreach(source IN LISTS common)
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})
+    list(REMOVE_ITEM common ${source})
+  endif()
+endforeach()
+file(GLOB drivers RELATIVE ${PROJECT_SOURCE_DIR}
+  firmware/boards/common/stm32/src/*.cpp firmware/boards/nucleo_*/src/*.cpp)
+list(FILTER drivers EXCLUDE REGEX "/board[.]cpp$")
+list(APPEND common ${drivers})
 foreach(source IN LISTS tidied common)
   add_test(NAME style.tidy.${source}
     COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${PROJECT_SOURCE_DIR}/build/host-clang

@@ -83,14 +83,14 @@ class RunningStream : public testing::Test {
     for (int block = 0; block < 20; ++block) {
       ASSERT_EQ(exchange().status, Status::kOk);
     }
-    ASSERT_EQ(bench_.drive().last, kDrive);
+    ASSERT_EQ(bench.drive().last, kDrive);
   }
 
   Exchange exchange() {
     std::array<Word, kBlockFrames> drive;
     for (Word& word : drive) {
-      word_ = std::min(word_ + kLimits.step_per_frame, kDrive);
-      word = word_;
+      last_word = std::min(last_word + kLimits.step_per_frame, kDrive);
+      word = last_word;
     }
     std::array<Frame, kBlockFrames> response;
     return stream().exchange(drive, response);
@@ -99,24 +99,24 @@ class RunningStream : public testing::Test {
   /// Exchanges until a fault. @returns It, and expects it within two blocks and the drive at zero
   /// within 256 frames after.
   Status fault() {
-    const std::uint64_t begin = bench_.drive().frames;
+    const std::uint64_t begin = bench.drive().frames;
     Status status = Status::kOk;
     for (int block = 0; block < 4 && status == Status::kOk; ++block) {
       status = exchange().status;
     }
-    const std::uint64_t frames = bench_.drive().frames - begin;
+    const std::uint64_t frames = bench.drive().frames - begin;
     EXPECT_LE(frames, 2 * kBlockFrames + hal::kMaxRampFrames);
-    EXPECT_EQ(bench_.drive().last, 0);
+    EXPECT_EQ(bench.drive().last, 0);
     EXPECT_TRUE(stream().drive_is_at_zero());
-    EXPECT_LE(bench_.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
+    EXPECT_LE(bench.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
     return status;
   }
 
-  G474Stream& stream() { return bench_.stream(); }
-  FakeConverters& chip() { return bench_.chip(); }
+  G474Stream& stream() { return bench.stream(); }
+  FakeConverters& chip() { return bench.chip(); }
 
-  Bench bench_{StreamFault::kNone, 0};
-  Word word_ = 0;
+  Bench bench{StreamFault::kNone, 0};
+  Word last_word = 0;
 };
 
 TEST_F(RunningStream, TellsInputsThatTakeEverySecondTrigger) {
@@ -150,8 +150,8 @@ TEST_F(RunningStream, TellsALostCrystalAndRefusesToStartAgain) {
 TEST_F(RunningStream, LeadsTheDriveToZeroWithoutTriggers) {
   chip().stop_triggers();
   EXPECT_EQ(exchange().status, Status::kLateBlock);
-  EXPECT_EQ(bench_.drive().last, 0);
-  EXPECT_LE(bench_.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
+  EXPECT_EQ(bench.drive().last, 0);
+  EXPECT_LE(bench.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
 }
 
 TEST_F(RunningStream, TakesAPauseOfHalfARing) {
@@ -165,8 +165,8 @@ TEST_F(RunningStream, TakesAPauseOfHalfARing) {
 TEST_F(RunningStream, HoldsTheDriveInALongerPauseAndTellsIt) {
   chip().spend_us(10 * kRingFrames * std::uint64_t{kFrame_us});
   // No old values: the drive has not moved.
-  EXPECT_EQ(bench_.drive().last, kDrive);
-  EXPECT_LE(bench_.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
+  EXPECT_EQ(bench.drive().last, kDrive);
+  EXPECT_LE(bench.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
   EXPECT_EQ(exchange().status, Status::kLostBlock);
   EXPECT_TRUE(stream().drive_is_at_zero());
 }
@@ -174,8 +174,8 @@ TEST_F(RunningStream, HoldsTheDriveInALongerPauseAndTellsIt) {
 TEST_F(RunningStream, LeadsTheDriveToZeroWhateverRuns) {
   EXPECT_TRUE(stream().force_to_zero());
   EXPECT_FALSE(stream().running());
-  EXPECT_EQ(bench_.drive().last, 0);
-  EXPECT_LE(bench_.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
+  EXPECT_EQ(bench.drive().last, 0);
+  EXPECT_LE(bench.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
 }
 
 /// What the board's README says of a wire from the drive to both inputs.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <unordered_map>
 
 #include "emax/board/converter_words.hpp"
 #include "emax/board/dma_memory.hpp"
@@ -255,14 +256,14 @@ class FakeConverters final : public FakeChip {
     return refuses;
   }
 
-  std::map<std::uintptr_t, std::uint32_t> registers_;
+  std::unordered_map<std::uintptr_t, std::uint32_t> registers_;
   std::map<std::uintptr_t, std::uint32_t> sizes_;
   std::function<void()> handler_;
   StreamFault fault_;
   std::uint64_t at_frame_;
   bool is_dac_ahead_;
   DriveProbe drive_;
-  std::uint64_t access_cycles_ = 4;
+  std::uint64_t access_cycles_ = 8;
   std::uint64_t cycles_ = 1;
   std::uint64_t next_trigger_ = 0;
   std::uint64_t conversion_end_ = 0;

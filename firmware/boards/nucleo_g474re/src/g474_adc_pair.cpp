@@ -70,7 +70,9 @@ bool enable(std::uintptr_t adc) noexcept {
   // The bit is not taken within four cycles of the calibration's end, so it is set until it is.
   return wait_for(
       [=] {
-        reg(adc + kControl) = kRegulator | kEnable;
+        if ((reg(adc + kControl) & kEnable) == 0) {
+          reg(adc + kControl) = kRegulator | kEnable;
+        }
         return (reg(adc + kStatus) & kReady) != 0;
       },
       kMost_us);

@@ -55,8 +55,9 @@ constexpr std::uint32_t kMostWait_us = 2 * kBlockFrames * kFrame_us;
 // Until the DAC has asked for its first value, if it does so before the first trigger.
 constexpr std::uint32_t kFirstRequest_us = 5;
 
-volatile std::uint32_t output_ring[kRingFrames];
-volatile std::uint32_t input_ring[kRingFrames];
+// In SRAM1.
+[[gnu::section(".bss.dma")]] volatile std::uint32_t output_ring[kRingFrames];
+[[gnu::section(".bss.dma")]] volatile std::uint32_t input_ring[kRingFrames];
 
 void set_up(std::uintptr_t channel, std::uintptr_t peripheral, std::uint32_t memory,
             std::uint32_t control) noexcept {

@@ -8,8 +8,7 @@
 
 namespace emax::board {
 
-/// Microseconds of `timebase.hpp`; the interrupt carries them past 32 bits, every 72 minutes. At a
-/// change of the processor's clock the time stands still until the new count has caught up.
+/// Microseconds of `timebase.hpp`; the interrupt carries them past 32 bits, every 72 minutes.
 class Stm32Clock final : public hal::Clock {
  public:
   static constexpr std::uint32_t kTick_us = 100'000;

@@ -10,8 +10,8 @@ namespace emax::board {
 /// TIM2, 32 bits wide and at this address on every STM32 that has it.
 inline constexpr std::uintptr_t kTimebase = 0x40000000;
 
-/// Sets the timebase to microseconds and starts it at 0, once its clock is on; again when the
-/// clock has changed.
+/// Sets the timebase to microseconds and starts it, once its clock is on; again when that has
+/// changed, and then it goes on from where it is.
 ///
 /// @param[in] clock_hz What the timer counts: whole megahertz, 1 to 65536 of them.
 void start_timebase(std::uint32_t clock_hz) noexcept;
