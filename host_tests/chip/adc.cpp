@@ -265,7 +265,8 @@ std::uint32_t Adc::half_cycles() const {
   constexpr std::uint32_t kSample[] = {5, 13, 25, 49, 95, 185, 495, 1281};
   constexpr std::uint32_t kConversion[] = {25, 21, 17, 13};
   const std::uint32_t settings = pair_settings();
-  const std::uint32_t sample = kSample[settings & 7] + ((settings & 7) == 0 ? settings >> 13 & 2 : 0);
+  const std::uint32_t sample =
+      kSample[settings & 7] + ((settings & 7) == 0 ? settings >> 13 & 2 : 0);
   const std::uint32_t once = sample + kConversion[settings >> 12 & 3];
   const bool sums = (stored(kCfgr2) & 1) != 0;
   return sums ? once * (2U << field(stored(kCfgr2), 2, 3)) : once;

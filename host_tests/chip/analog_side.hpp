@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "emax/sim/volt_bench.hpp"
+
 #include "chip/events.hpp"
 #include "chip/stm32g474.hpp"
-#include "emax/sim/volt_bench.hpp"
 
 namespace emax::chip {
 
@@ -35,7 +36,9 @@ class SimulatedBench final : public BenchInVolts {
  public:
   explicit SimulatedBench(const sim::BenchSettings& settings) : settings_(settings) {}
   sim::BenchVolts step(double drive_v) override { return bench_.step(drive_v); }
-  void set_period(double period_s) override { status_ = bench_.configure(settings_, 1.0 / period_s); }
+  void set_period(double period_s) override {
+    status_ = bench_.configure(settings_, 1.0 / period_s);
+  }
   const sim::VoltBench& bench() const { return bench_; }
   Status status() const { return status_; }
 
@@ -95,8 +98,8 @@ class AnalogSide final : public Pins {
       bench_.set_period(period_s);
     } else {
       // The bench went on while there were no triggers; a second of it is enough to come to rest.
-      const double missed = std::fmin(std::round(seconds(at - last_) / period_s) - 1.0,
-                                      1.0 / period_s);
+      const double missed =
+          std::fmin(std::round(seconds(at - last_) / period_s) - 1.0, 1.0 / period_s);
       for (double i = 0; i < missed; i += 1.0) {
         step(held_v_);
       }

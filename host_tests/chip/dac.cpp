@@ -13,7 +13,8 @@ constexpr std::uint32_t kCr = 0x00, kSwtrgr = 0x04, kDhr12r1 = 0x08, kDhr12l1 = 
 constexpr std::uint32_t kDhr8r1 = 0x10, kDhr12rd = 0x20, kDhr12ld = 0x24, kDhr8rd = 0x28;
 constexpr std::uint32_t kDor1 = 0x2C, kSr = 0x34, kMcr = 0x3C;
 constexpr std::uint32_t kEnable = 1, kTrigger = 2, kDmaEnable = 1U << 12;
-constexpr std::uint32_t kUnderrunInterrupt = 1U << 13, kUnderrun = 1U << 13, kOutputReady = 1U << 11;
+constexpr std::uint32_t kUnderrunInterrupt = 1U << 13, kUnderrun = 1U << 13,
+                        kOutputReady = 1U << 11;
 /// Waves, calibration, the second channel.
 constexpr std::uint32_t kOtherModes = 0x7FFF0000 | 1U << 14 | 3U << 6;
 constexpr unsigned kPin = 4;
@@ -96,7 +97,9 @@ void Dac::write_control(std::uint32_t value) {
     request_waits_ = underrun_ = false;
   }
   if ((value & kEnable) != 0 && (old & kEnable) == 0) {
-    const unsigned wanted = clocks_.hclk_hz > 160'000'000 ? 2 : clocks_.hclk_hz > 80'000'000 ? 1 : 0;
+    const unsigned wanted = clocks_.hclk_hz > 160'000'000  ? 2
+                            : clocks_.hclk_hz > 80'000'000 ? 1
+                                                           : 0;
     if (field(stored(kMcr), 14, 2) != wanted) {
       report("dac_hfsel", kMcr, stored(kMcr));
     }

@@ -113,7 +113,7 @@ void Dma::fail(unsigned channel) {
   set_flags(channel, kError);
 }
 
-DmaAnswer Dma::request(unsigned channel, unsigned id) {
+DmaAnswer Dma::request(unsigned channel, unsigned id, bool lost) {
   if (mux_.request_of(first_mux_ + channel) != id || !gate().on || !on(channel)) {
     return DmaAnswer::kNobody;
   }
@@ -127,6 +127,13 @@ DmaAnswer Dma::request(unsigned channel, unsigned id) {
     fail_[channel] = false;
     fail(channel);
     return DmaAnswer::kNobody;
+  }
+  if (lost) {
+    const std::uint32_t settings = stored(control(channel));
+    if ((settings & kFromMemory) == 0) {
+      bus_.read(stored(peripheral(channel)), peripheral_bytes(settings));
+    }
+    return DmaAnswer::kDone;
   }
   transfer(channel);
   const std::uint32_t left = stored(count(channel)) - 1;
@@ -175,13 +182,11 @@ void Dma::refresh(unsigned channel) {
 }
 
 DmaAnswer DmaRequests::request(unsigned id) {
-  if (to_lose_ != 0 && id == lost_id_) {
-    --to_lose_;
-    return DmaAnswer::kDone;
-  }
+  const bool lost = to_lose_ != 0 && id == lost_id_;
+  to_lose_ -= lost ? 1 : 0;
   for (Dma* controller : controllers_) {
     for (unsigned channel = 0; channel < Dma::kChannels; ++channel) {
-      const DmaAnswer answer = controller->request(channel, id);
+      const DmaAnswer answer = controller->request(channel, id, lost);
       if (answer != DmaAnswer::kNobody) {
         return answer;
       }

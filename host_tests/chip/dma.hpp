@@ -58,7 +58,8 @@ class Dma final : public RegisterBlock {
 
   bool on(unsigned channel) const { return (get(control(channel)) & 1) != 0; }
   /// Moves one item if this channel is on and has this request.
-  DmaAnswer request(unsigned channel, unsigned id);
+  /// @param[in] lost The item vanishes: it is read, and the channel does not move on.
+  DmaAnswer request(unsigned channel, unsigned id, bool lost);
   /// Test: the next transfer of a channel, counted from 0, is an error on the bus.
   void fail_next(unsigned channel) { fail_.at(channel) = true; }
 
@@ -95,7 +96,7 @@ class DmaRequests {
  public:
   DmaRequests(Dma& first, Dma& second) : controllers_{&first, &second} {}
   DmaAnswer request(unsigned id);
-  /// Test: so many requests of this kind are answered, but nothing is moved.
+  /// Test: what so many requests of this kind move is lost, and does not count.
   void lose(unsigned id, unsigned requests) {
     lost_id_ = id;
     to_lose_ = requests;

@@ -40,8 +40,7 @@ Engine::Engine(Core core, EngineClient& client) : client_(client) {
 void Engine::map_memory(std::uint32_t address, std::size_t bytes, std::uint32_t permissions,
                         std::uint8_t* memory) {
   check(uc_mem_map_ptr(engine_.get(), address, bytes, permissions, memory), "uc_mem_map_ptr");
-  memories_.push_back(
-      {address, memory, std::vector<std::uint32_t>(bytes / kGranule, permissions)});
+  memories_.push_back({address, memory, std::vector<std::uint32_t>(bytes / kGranule, permissions)});
 }
 
 void Engine::map_registers(std::uint32_t address, std::size_t bytes) {

@@ -38,8 +38,8 @@ std::uint32_t Iwdg::on_read(std::uint32_t offset, std::uint32_t value) {
   std::uint32_t flags = 0;
   for (unsigned i = 0; i < 3; ++i) {
     // Without its clock an update never ends.
-    const bool over = rcc_.lsi_runs() &&
-                      context_.events.now() >= updated_at_[i] + ticks(kUpdateCycles / lsi_hz);
+    const bool over =
+        rcc_.lsi_runs() && context_.events.now() >= updated_at_[i] + ticks(kUpdateCycles / lsi_hz);
     flags |= std::uint32_t{updated_at_[i] != 0 && !over} << i;
   }
   // What a test holds, it holds.

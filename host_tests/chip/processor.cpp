@@ -21,8 +21,8 @@ constexpr std::uint32_t kBasicWords = 8, kFloatingWords = 26;
 /// flag.
 constexpr unsigned kStorm = 1000;
 
-constexpr int kBasic[] = {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2, UC_ARM_REG_R3,
-                          UC_ARM_REG_R12, UC_ARM_REG_LR};
+constexpr int kBasic[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,  UC_ARM_REG_R2,
+                          UC_ARM_REG_R3, UC_ARM_REG_R12, UC_ARM_REG_LR};
 
 bool is_long(std::uint32_t halfword) { return (halfword >> 11) >= 0x1D; }
 

@@ -17,11 +17,11 @@ namespace emax::chip {
 
 /// Why run() came back.
 enum class Halt {
-  kTime,     ///< The time asked for has passed.
-  kAsked,    ///< Somebody called halt().
-  kLockup,   ///< A fault in the handler of a fault; only a reset helps.
-  kBreak,    ///< A BKPT instruction.
-  kAsleep,   ///< Sleeps, and nothing is due that could wake it, ever.
+  kTime,    ///< The time asked for has passed.
+  kAsked,   ///< Somebody called halt().
+  kLockup,  ///< A fault in the handler of a fault; only a reset helps.
+  kBreak,   ///< A BKPT instruction.
+  kAsleep,  ///< Sleeps, and nothing is due that could wake it, ever.
 };
 
 /// Peripherals, as the processor sees them.

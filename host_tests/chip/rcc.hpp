@@ -10,7 +10,7 @@
 namespace emax::chip {
 
 /// Why the chip starts; bits of RCC_CSR.
-inline constexpr std::uint32_t kPowerOnReset = 0x0C000000;   ///< Brown-out and pin.
+inline constexpr std::uint32_t kPowerOnReset = 0x0C000000;  ///< Brown-out and pin.
 inline constexpr std::uint32_t kPinReset = 0x04000000;
 inline constexpr std::uint32_t kSoftwareReset = 0x14000000;  ///< The chip pulls its own pin, too.
 inline constexpr std::uint32_t kWatchdogReset = 0x24000000;

@@ -91,9 +91,7 @@ class RegisterBlock {
 
   void put(std::uint32_t offset, std::uint32_t value);
   void set_bits(std::uint32_t offset, std::uint32_t bits) { put(offset, stored(offset) | bits); }
-  void clear_bits(std::uint32_t offset, std::uint32_t bits) {
-    put(offset, stored(offset) & ~bits);
-  }
+  void clear_bits(std::uint32_t offset, std::uint32_t bits) { put(offset, stored(offset) & ~bits); }
   /// As stored, without what a test holds.
   std::uint32_t stored(std::uint32_t offset) const;
   /// What the writable bits make of a value.

@@ -129,9 +129,8 @@ void Stm32g474::attach_clocks() {
 
 void Stm32g474::wire() {
   clocks.on_change([this] { processor_.set_cycle(cycles_of(1, clocks.hclk_hz)); });
-  dmamux.ask_with([this](unsigned channel) {
-    return channel < 8 ? dma1.on(channel) : dma2.on(channel - 8);
-  });
+  dmamux.ask_with(
+      [this](unsigned channel) { return channel < 8 ? dma1.on(channel) : dma2.on(channel - 8); });
   adc.look_at_pin_with(
       [this](unsigned channel) { return ports[0]->mode(channel - 1) == PinMode::kAnalog; });
   // IN1 is PA0, IN2 is PA1, of both converters; nothing else is connected.
@@ -187,14 +186,13 @@ void Stm32g474::restart(std::uint32_t cause, bool power_lost) {
   events.clear();
   wires_.clear();
   rcc.note_reset(cause);
-  // Causes stay until the program clears them; so does the debug unit's register.
+  // The clock first, as what follows looks at it. The debug unit's registers only know power.
+  rcc.reset();
   for (const Place& place : places_) {
-    if (place.block != &dbgmcu_ || power_lost) {
-      place.block->gate() = {};
+    if (place.block != &rcc && (place.block != &dbgmcu_ || power_lost)) {
       place.block->reset();
     }
   }
-  rcc.reset();
   processor_.system().reset(kFlashBase, power_lost);
   processor_.reset(kFlashBase);
 }

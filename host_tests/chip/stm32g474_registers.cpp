@@ -1,6 +1,6 @@
-// The registers of the STM32G474 that a driver of this instrument may use: offset, value after reset,
-// bits that exist, bits that a program can set. From ST's CMSIS header (stm32g474xx.h) and SVD file,
-// both Apache-2.0; the header is right where they differ.
+// The registers of the STM32G474 that a driver of this instrument may use: offset, value after
+// reset, bits that exist, bits that a program can set. From ST's CMSIS header (stm32g474xx.h) and
+// SVD file, both Apache-2.0; the header is right where they differ.
 #include "chip/stm32g474_registers.hpp"
 
 namespace emax::chip {

@@ -127,7 +127,7 @@ std::uint32_t SystemSpace::read_nvic(std::uint32_t offset) const {
   std::uint32_t value = 0;
   for (unsigned i = 0; i < 32 && first + i < kInterruptLines; ++i) {
     const unsigned exception = kFirstInterrupt + first + i;
-    const bool set = kind <= 0x180 ? nvic_.enabled(exception)
+    const bool set = kind <= 0x180   ? nvic_.enabled(exception)
                      : kind <= 0x280 ? nvic_.pending(exception)
                                      : nvic_.active(exception);
     value |= std::uint32_t{set} << i;

@@ -15,10 +15,17 @@ namespace {
 #define EMAX_ROW(name) #name,
 const char* const kMistakes[] = {EMAX_CHIP_MISTAKES(EMAX_ROW)};
 
-/// What is found where that is not the one finding of the same name.
+/// What is found where that is not only the one finding of the same name: a converter whose data
+/// nobody takes overruns.
 const std::map<std::string, std::set<std::string>> kFindings = {
     {"nothing", {}},
     {"dac_by_half_words", {"wrong_width"}},
+    {"adc_dma_one_shot", {"adc_dma_one_shot", "adc_overrun"}},
+    {"dma_not_circular", {"dma_not_circular", "adc_overrun"}},
+    {"dma_no_request_chosen", {"dma_no_request_chosen", "adc_overrun"}},
+    {"dma_nothing_to_transfer", {"dma_nothing_to_transfer", "adc_overrun", "dac_underrun"}},
+    {"dma_unreachable", {"dma_unreachable", "adc_overrun"}},
+    {"flash_old_error_flags", {"flash_old_error_flags", "flash_not_programming"}},
 };
 
 std::set<std::string> expected_findings(const std::string& name) {
@@ -43,10 +50,10 @@ TEST_P(Mistakes, IsFoundAndNothingElseIs) {
   EXPECT_EQ(found, expected_findings(kMistakes[number])) << board.chip.findings.text();
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Chip, Mistakes,
-    testing::Range(0U, static_cast<std::uint32_t>(sizeof kMistakes / sizeof kMistakes[0])),
-    [](const auto& number) { return std::string(kMistakes[number.param]); });
+INSTANTIATE_TEST_SUITE_P(Chip, Mistakes,
+                         testing::Range(0U, static_cast<std::uint32_t>(sizeof kMistakes /
+                                                                       sizeof kMistakes[0])),
+                         [](const auto& number) { return std::string(kMistakes[number.param]); });
 
 }  // namespace
 }  // namespace emax::chip

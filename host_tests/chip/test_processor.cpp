@@ -41,9 +41,7 @@ TEST_F(Interrupts, TheCycleCounterCountsInstructions) {
 }
 
 // One microsecond is 16 instructions: a handler of fewer than 48 takes less than three.
-TEST_F(Interrupts, WaitingForATimerTakesItsTime) {
-  EXPECT_LE(board.chip.word_at("tim2_time"), 3U);
-}
+TEST_F(Interrupts, WaitingForATimerTakesItsTime) { EXPECT_LE(board.chip.word_at("tim2_time"), 3U); }
 
 TEST_F(Interrupts, AGuardedPageIsAMemManageFault) {
   EXPECT_EQ(why, Halt::kBreak);

@@ -132,9 +132,7 @@ void Timer::update(bool by_counter) {
   }
 }
 
-void Timer::refresh_line() {
-  context_.wires.set(line_, this, (get(kSr) & get(kDier) & 0x1F) != 0);
-}
+void Timer::refresh_line() { context_.wires.set(line_, this, (get(kSr) & get(kDier) & 0x1F) != 0); }
 
 std::uint32_t Timer::on_read(std::uint32_t offset, std::uint32_t value) {
   return offset == kCnt ? count() : value;
@@ -164,7 +162,7 @@ void Timer::on_write(std::uint32_t offset, std::uint32_t value) {
 void Timer::settings_changed(std::uint32_t offset, std::uint32_t value) {
   const std::uint32_t now = count();
   put(offset, masked(offset, value));
-  if ((offset == kCr1 && (value & kOtherModes) != 0) || (offset == kSmcr && value != 0)) {
+  if ((offset == kCr1 && (stored(kCr1) & kOtherModes) != 0) || (offset == kSmcr && value != 0)) {
     report("not_modelled", offset, value);
   }
   if (offset == kArr && !has(kCr1, kPreload)) {

@@ -14,7 +14,8 @@ class Timer final : public RegisterBlock {
  public:
   enum class Kind { kBasic, kGeneral };
 
-  Timer(Context context, Clocks& clocks, const std::string& name, Kind kind, unsigned interrupt_line);
+  Timer(Context context, Clocks& clocks, const std::string& name, Kind kind,
+        unsigned interrupt_line);
 
   /// What hears of each update that goes out as a trigger (CR2.MMS = 2).
   void on_trigger(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }

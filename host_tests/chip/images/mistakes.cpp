@@ -1,12 +1,13 @@
 // Wrong uses of the chip, one at a time: the test puts the number of one into `chosen` in flash.
 #include "chip/images/mistakes.hpp"
+
 #include "chip/images/registers.hpp"
 
 using namespace image;
 
 extern "C" {
 extern const volatile Word chosen;
-[[gnu::used]] const volatile Word chosen = 0;
+[[gnu::used, gnu::section(".rodata.chosen")]] const volatile Word chosen = 0;
 Word drive[kRing];
 Word response[kRing];
 

@@ -44,7 +44,9 @@ inline void clock_on(Word address, Word bits) {
   static_cast<void>(read_back);
 }
 
-inline void interrupt_on(unsigned number) { reg(0xE000E100 + 4 * (number / 32)) = 1U << number % 32; }
+inline void interrupt_on(unsigned number) {
+  reg(0xE000E100 + 4 * (number / 32)) = 1U << number % 32;
+}
 
 /// From HSI to 170 MHz by the crystal.
 inline bool clock_170() {
