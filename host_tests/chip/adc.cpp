@@ -294,7 +294,7 @@ std::uint32_t Adc::convert(double input_v) const {
   return (left && !sums ? sum << (16 - bits) : sum) & 0xFFFF;
 }
 
-bool Adc::finish() {
+void Adc::finish() {
   const Time now = context_.events.now();
   const bool wrong = pair_.first_result_is_wrong && (rested_ || now > last_end_ + kRest);
   rested_ = false;
@@ -311,7 +311,6 @@ bool Adc::finish() {
   }
   set_bits(kIsr, kEndOfConversion | kEndOfSequence | 2U);
   refresh();
-  return !unread;
 }
 
 AdcCommon::AdcCommon(Context context, AdcPair& pair)
@@ -422,9 +421,9 @@ void AdcPair::convert(bool both) {
 
 void AdcPair::finish(bool both) {
   ++conversions_;
-  bool kept = master.finish();
+  master.finish();
   if (both) {
-    kept = slave.finish() && kept;
+    slave.finish();
   }
   if (!(master.overrun() && master.keeps_old_data())) {
     hand_over(both);

@@ -34,8 +34,8 @@ class Adc final : public RegisterBlock {
   bool keeps_old_data() const { return !has(0x0C, 1U << 12); }
 
   void begin(double input_v);
-  /// Takes the result into the register. @returns False if it is lost, as the last was not read.
-  bool finish();
+  /// Takes the result into the register, unless the last was not read and is to be kept.
+  void finish();
   std::uint32_t take_data();
   std::uint32_t flags() const { return get(0x00); }
   void end_without_trigger();
