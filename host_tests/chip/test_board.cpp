@@ -1,0 +1,316 @@
+// The image to be flashed, as it is: boot, console, sweep, faults, store, watchdog, in the virtual
+// chip.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "chip/virtual_board.hpp"
+
+namespace emax::chip {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kMiddle_v = 1.65;
+constexpr double kCode_v = 3.3 / 4096;
+/// What a fault may take: found within two blocks of 64, then at zero within 256 frames.
+constexpr double kFramesToZero = 2 * 64 + 256;
+
+std::vector<double> numbers(const std::string& text) {
+  std::vector<double> values;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    values.push_back(std::strtod(part.c_str(), nullptr));
+  }
+  return values;
+}
+
+class RealImage : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::ifstream(EMAX_CHIP_IMAGE)) {
+      GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset nucleo-g474re";
+    }
+    board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, bench);
+  }
+
+  void boot() {
+    board->chip.power_on();
+    board->chip.run_for(0.05);
+  }
+  std::string ask(const std::string& question, double most_s = 5.0) {
+    return board->ask(question, most_s);
+  }
+  /// The oldest error's number.
+  int error() { return static_cast<int>(std::strtol(ask("SYST:ERR?").c_str(), nullptr, 10)); }
+  /// The function whose mangled name contains this.
+  std::uint32_t function(const std::string& part) {
+    const Elf elf = read_elf(EMAX_CHIP_IMAGE);
+    const auto found = std::find_if(elf.symbols.begin(), elf.symbols.end(), [&](const auto& entry) {
+      return entry.first.find(part) != std::string::npos;
+    });
+    EXPECT_NE(found, elf.symbols.end()) << part;
+    return found == elf.symbols.end() ? kFlashBase : found->second & ~1U;
+  }
+  /// Starts a sweep and lets it come so far that the drive is on.
+  void start_sweep() {
+    ask("SENS:SWE:FREQ 200,500,1000;*OPC?");
+    board->chip.console.send("INIT\n");
+    ASSERT_TRUE(board->chip.run_until([&] { return driving_v() > 0.1; }, 2.0));
+  }
+  double driving_v() const { return std::fabs(board->analog.drive_pin_v() - kMiddle_v); }
+  /// When the drive pin was last away from the middle by more than a code.
+  Time last_driven() const {
+    Time last = 0;
+    const auto& record = board->analog.drive_record();
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (std::fabs(record[i].pin_v - kMiddle_v) > kCode_v) {
+        last = i + 1 < record.size() ? record[i + 1].at : board->chip.events.now();
+      }
+    }
+    return last;
+  }
+  double frames(Time from, Time until) const {
+    return seconds(until - from) / board->chip.tim6.period_s();
+  }
+
+  sim::BenchSettings settings;
+  SimulatedBench bench{settings};
+  std::unique_ptr<VirtualBoard> board;
+};
+
+TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
+  board->chip.set_unique_id({0x00112233, 0x44556677, 0x8899AABB});
+  boot();
+  const std::string name = ask("*IDN?");
+  EXPECT_EQ(name.find("emax,nucleo_g474re,00112233445566778899AABB,"), 0U) << name;
+  EXPECT_EQ(ask("*TST?"), "0");
+  EXPECT_EQ(error(), 0);
+  EXPECT_EQ(board->chip.clocks.hclk_hz, 170'000'000U);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+TEST_F(RealImage, TheDrivePinRestsUntilASweepBegins) {
+  boot();
+  ask("*TST?");
+  board->chip.reset_pin();
+  boot();
+  EXPECT_EQ(board->analog.greatest_excursion_v(), 0.0);
+}
+
+// The device that the simulated bench drew, K(jw) of second order, times the gains it drew.
+TEST_F(RealImage, ASweepRecoversTheTruthWithinItsUncertainty) {
+  boot();
+  ask("SENS:SWE:FREQ 100,300,900,2500,5000;*OPC?");
+  EXPECT_EQ(ask("INIT;*OPC?", 60.0), "1");
+  EXPECT_EQ(error(), 0);
+  const std::vector<double> points = numbers(ask("FETC:FRES?"));
+  ASSERT_EQ(points.size(), 1U + 5 * 5);
+  const sim::BenchTruth& truth = bench.bench().truth();
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double* const point = points.data() + 1 + 5 * i;
+    const double x = point[0] / truth.device.natural_frequency_hz;
+    const std::complex<double> k =
+        truth.apparent_sensitivity /
+        std::complex<double>(1.0 - x * x, 2.0 * truth.device.damping * x);
+    // Five amplitudes and five phases: four standard uncertainties fail once in 1600 seeds.
+    EXPECT_NEAR(point[1], std::abs(k), 4.0 * point[3]) << point[0];
+    EXPECT_NEAR(point[2], std::arg(k) * 180.0 / kPi, 4.0 * point[4]) << point[0];
+  }
+  EXPECT_EQ(board->chip.findings.text(), "");
+  // The buffer of the DAC is linear up to 0.2 V from the rails.
+  EXPECT_LT(board->analog.greatest_excursion_v(), kMiddle_v - 0.2);
+  EXPECT_LE(driving_v(), kCode_v);
+}
+
+TEST_F(RealImage, EnergiesHaveTheDigitsOfThePc) {
+  boot();
+  ask("CALC:MOD 1.037,4073,0.3182;FILT:GAIN 1.037;*OPC?");
+  ask("CALC:ENER:LIM 1.037;TIME 0.002;*OPC?");
+  const std::vector<double> energy = numbers(ask("CALC:ENER:EVAL? 0.00068,0.00149"));
+  ASSERT_FALSE(energy.empty());
+  // DESIGN.md's number for the paper's signal, to its twelve digits.
+  EXPECT_NEAR(energy[0], 0.00399063106536, 5e-15);
+}
+
+struct SweepFault {
+  const char* name;
+  void (*strike)(Stm32g474&);
+};
+
+void lose_a_block(Stm32g474& chip) { chip.requests.lose(kAdc1Request, 64); }
+void stop_the_converters(Stm32g474& chip) { chip.adc.set_dead(true); }
+void fail_the_response(Stm32g474& chip) { chip.dma1.fail_next(0), chip.dma2.fail_next(0); }
+void fail_the_drive(Stm32g474& chip) { chip.dma1.fail_next(1), chip.dma2.fail_next(1); }
+
+class FaultOfTheSweep : public RealImage, public testing::WithParamInterface<SweepFault> {};
+
+TEST_P(FaultOfTheSweep, EndsWithAnErrorAndTheDriveAtZero) {
+  boot();
+  start_sweep();
+  const Time struck = board->chip.events.now();
+  GetParam().strike(board->chip);
+  board->chip.run_for(0.05);
+  EXPECT_LE(driving_v(), kCode_v);
+  EXPECT_LE(frames(struck, last_driven()), kFramesToZero);
+  EXPECT_NE(error(), 0);
+  EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
+}
+
+INSTANTIATE_TEST_SUITE_P(Chip, FaultOfTheSweep,
+                         testing::Values(SweepFault{"lost_block", lose_a_block},
+                                         SweepFault{"dead_converters", stop_the_converters},
+                                         SweepFault{"response_dma", fail_the_response},
+                                         SweepFault{"drive_dma", fail_the_drive}),
+                         [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST_F(RealImage, AnAbortBringsTheDriveToZero) {
+  boot();
+  start_sweep();
+  board->chip.console.send("ABOR\n");
+  board->chip.run_for(0.1);
+  EXPECT_LE(driving_v(), kCode_v);
+  EXPECT_EQ(error(), 0);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+TEST_F(RealImage, WithoutACrystalItTalksAndRefusesToMeasure) {
+  board->chip.rcc.set_hse_dead(true);
+  boot();
+  board->chip.run_for(0.3);
+  EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
+  ask("INIT;*OPC?");
+  EXPECT_NE(error(), 0);
+  EXPECT_EQ(board->analog.greatest_excursion_v(), 0.0);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+TEST_F(RealImage, ACrystalThatStopsEndsTheSweepWithTheDriveAtZero) {
+  boot();
+  start_sweep();
+  const Time struck = board->chip.events.now();
+  board->chip.rcc.set_hse_dead(true);
+  board->chip.run_for(0.5);
+  EXPECT_FALSE(board->chip.findings.has("clock_lost"));
+  EXPECT_LE(driving_v(), kCode_v);
+  // The stream's clock is ten times as slow now.
+  EXPECT_LE(seconds(last_driven() - struck), 0.2);
+}
+
+struct HeldFlag {
+  const char* block;
+  const char* register_name;
+  std::uint32_t bits;
+  std::uint32_t value;
+};
+
+class FlagThatNeverComes : public RealImage, public testing::WithParamInterface<HeldFlag> {};
+
+// Whatever does not come, the console answers in the end, and the drive rests.
+TEST_P(FlagThatNeverComes, IsWaitedForWithinBounds) {
+  const HeldFlag& flag = GetParam();
+  board->chip.hold(flag.block, flag.register_name, flag.bits, flag.value);
+  board->chip.power_on();
+  board->chip.run_for(2.0);
+  EXPECT_EQ(ask("*IDN?", 10.0).substr(0, 5), "emax,");
+  ask("SENS:SWE:FREQ 200,500,1000;*OPC?");
+  ask("INIT;*OPC?", 20.0);
+  EXPECT_LE(driving_v(), kCode_v);
+  EXPECT_EQ(ask("*IDN?", 10.0).substr(0, 5), "emax,");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Chip, FlagThatNeverComes,
+    testing::Values(HeldFlag{"RCC", "CR", 1U << 17, 0}, HeldFlag{"RCC", "CR", 1U << 25, 0},
+                    HeldFlag{"RCC", "CFGR", 0xC, 4}, HeldFlag{"FLASH", "ACR", 0xF, 0},
+                    HeldFlag{"FLASH", "SR", 1U << 16, 1U << 16}, HeldFlag{"IWDG", "SR", 7, 7},
+                    HeldFlag{"ADC1", "CR", 1U << 31, 1U << 31},
+                    HeldFlag{"ADC2", "CR", 1U << 31, 1U << 31}, HeldFlag{"ADC1", "ISR", 1, 0},
+                    HeldFlag{"ADC2", "ISR", 1, 0}, HeldFlag{"ADC1", "CR", 1U << 2, 1U << 2},
+                    HeldFlag{"DAC1", "SR", 1U << 11, 0}, HeldFlag{"DMA1", "ISR", 0xFF, 0}),
+    [](const auto& flag) {
+      return std::string(flag.param.block) + "_" + flag.param.register_name + "_" +
+             std::to_string(flag.param.bits);
+    });
+
+TEST_F(RealImage, SettingsSurviveAPowerCutAtEachOperation) {
+  boot();
+  ask("SENS:SWE:CYCL 11;*SAV 1;*OPC?");
+  const unsigned before = board->chip.flash.operations();
+  ask("SENS:SWE:CYCL 12;*SAV 1;*OPC?");
+  const unsigned operations = board->chip.flash.operations() - before;
+  ASSERT_GT(operations, 1U);
+  std::string kept = "12";
+  int next = 13;
+  // Every operation within one save, each in one of three ways; some, to keep the test short.
+  for (unsigned operation = 0; operation < operations; operation += 1 + operations / 40) {
+    for (const PowerCut how : {PowerCut::kBefore, PowerCut::kWithin, PowerCut::kAfter}) {
+      const std::string wanted = std::to_string(next++);
+      board->chip.flash.cut_power_at(operation, how);
+      ask("SENS:SWE:CYCL " + wanted + ";*SAV 1;*OPC?", 1.0);
+      ASSERT_TRUE(board->chip.power_failed()) << operation;
+      boot();
+      ask("*RCL 1;*OPC?");
+      ASSERT_EQ(error(), 0) << operation;
+      const std::string found = ask("SENS:SWE:CYCL?");
+      ASSERT_TRUE(found == kept || found == wanted) << found << " after a cut at " << operation;
+      kept = found;
+    }
+  }
+  ask("SENS:SWE:CYCL 7;*SAV 1;*OPC?");
+  boot();
+  ask("*RCL 1;*OPC?");
+  EXPECT_EQ(ask("SENS:SWE:CYCL?"), "7");
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+TEST_F(RealImage, NoiseAndFramingErrorsAreSurvived) {
+  boot();
+  for (const LineFault fault : {LineFault::kNoise, LineFault::kFraming}) {
+    board->chip.console.spoil_next(fault);
+    ask("*IDN?", 0.5);
+    ask("*CLS;*OPC?", 0.5);
+    EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
+  }
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+TEST_F(RealImage, AnOverrunIsSurvived) {
+  boot();
+  board->chip.processor().nvic().enable(interrupt(91), false);
+  board->chip.console.send("*IDN?*IDN?*IDN?");
+  board->chip.run_for(0.01);
+  EXPECT_GT(board->chip.console.lost(), 0U);
+  board->chip.processor().nvic().enable(interrupt(91), true);
+  board->chip.run_for(0.01);
+  ask("", 0.1);
+  ask("*CLS;*OPC?", 0.5);
+  EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+// The self test becomes a loop without end, in a second copy of the image.
+TEST_F(RealImage, AProgramThatHangsIsResetAndSaysSo) {
+  boot();
+  const std::uint16_t forever = 0xE7FE;
+  std::memcpy(board->chip.flash.bytes() + (function("self_test_tables") - kFlashBase), &forever, 2);
+  boot();
+  const unsigned resets = board->chip.resets();
+  board->chip.console.send("*TST?\n");
+  EXPECT_TRUE(board->chip.run_until([&] { return board->chip.resets() > resets; }, 30.0, 0.01));
+  board->chip.run_for(0.1);
+  board->chip.console.take_sent();
+  EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
+  EXPECT_NE(error(), 0);
+  EXPECT_EQ(board->analog.greatest_excursion_v(), 0.0);
+}
+
+}  // namespace
+}  // namespace emax::chip
