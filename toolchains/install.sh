@@ -17,7 +17,7 @@ TEXT
 build_packages='cmake g++ gnuplot-nox ninja-build'
 target_packages="gcc-arm-none-eabi gcc-riscv64-unknown-elf googletest libnewlib-arm-none-eabi \
 libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-numpy qemu-system-arm qemu-system-misc"
-check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev \
+check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev poppler-utils \
 python3-pyvisa python3-pyvisa-py"
 
 if [ $# -gt 1 ]; then

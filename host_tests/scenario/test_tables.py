@@ -6,6 +6,7 @@ usage: test_tables.py PROGRAM DATA_DIRECTORY [unittest arguments]
 """
 
 import cmath
+import json
 import math
 import random
 
@@ -164,6 +165,43 @@ class TablesOfPiezos(Tables, ByHand):
         text = self.succeed("report", "--points", TABLES / "handheld_160hz.csv", "--out", "out")
         self.assertIn("f0                        not determined", text)
         self.assertEqual(self.files(), ["out", "out/report.txt", "out/results.json"])
+
+
+class WarningsOfReports(Tables, ProgramTest):
+    """What the text calls a warning is one in results.json, and the other way round."""
+
+    def assert_warnings(self, arguments, *about):
+        text = self.succeed("report", *arguments, "--out", "out")
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertEqual([warning["about"] for warning in results["warnings"]], list(about))
+        self.assertEqual(text.count("WARNING"), len(about))
+        self.assertFalse(results["simulated"])
+
+    def test_each_that_a_table_can_bring(self):
+        short = ["--time", "0.001", "--trend", "none"]
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none"])
+        self.assert_warnings(["--points", TABLES / "plain.csv", *QUICK], "monte_carlo")
+        self.assert_warnings(["--points", DATA / "djb_a1800v.csv", "--trend", "none"], "fit")
+        self.assert_warnings(["--points", TABLES / "piezo_01.csv", *short], "damping")
+        self.assert_warnings(["--points", TABLES / "handheld_160hz.csv"], "energy")
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none", "--time", "0.0005"], "energy")
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none", "--cutoff", "5000"], "energy")
+        # 2.4 % of the draws are below 0.0001.
+        wide = ["--model", "1.037,4073,0.02,0.001,4,0.0101", *QUICK, "--time", "0.005", "--distribution", "normal"]
+        self.assert_warnings(wide, "monte_carlo", "monte_carlo", "uncertainty")
+
+    def test_uncertainties_that_are_too_large_for_a_linear_law(self):
+        U = 0.5
+        rows = [f"{f!r},{a!r},{p!r},{U * a!r},{57 * U!r}" for f, a, p, *_ in table_rows()]
+        self.assert_warnings(["--points", self.write([TablesThereAndBack.NAMES, *rows]), *QUICK], "fit_draws",
+                             "monte_carlo", "monte_carlo")
+
+    def test_a_measurement_that_failed(self):
+        self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertEqual([warning["about"] for warning in results["warnings"]], ["measurement"])
+        self.assertTrue(results["simulated"])
+        self.assertTrue((self.directory / "out/report.txt").read_text().startswith("SIMULATION: "))
 
 
 def table_rows():

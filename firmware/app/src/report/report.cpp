@@ -3,11 +3,11 @@
 
 #include <limits>
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 #include "report_figures.hpp"
 #include "report_parts.hpp"
-#include "report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -263,41 +263,6 @@ void write_correlations(const EvaluationResults& results, ReportWriter& out) noe
   out.line();
 }
 
-void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
-  const double reduced = fit.chi2 / fit.dof;
-  const double limit = reduced_chi_square_limit(fit.dof);
-  if (reduced > limit) {
-    out.line();
-    out.part(ReportPart::kWarning)
-        .text("  WARNING: chi2/dof = ")
-        .general(reduced, 4)
-        .text(" is above ");
-    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
-    out.text(
-        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
-        "  these frequencies, or the stated uncertainties are too small. The standard\n"
-        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
-        "  then too small by about the Birge ratio of ");
-    out.general(fit.birge_ratio, 3).text(".\n");
-    out.text(
-        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
-        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
-        "  and that the table's uncertainties are expanded ones (k = 2).\n");
-    if (cause != nullptr) {
-      write_cause(cause, out);
-    }
-    return;
-  }
-  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
-  if (reduced < low) {
-    out.line();
-    out.part(ReportPart::kNote).text("  Note: chi2/dof is below ").general(low, 3);
-    out.text(
-        ", which one fit in a hundred undercuts: the points scatter\n"
-        "  less than the stated uncertainties say. These may be too large.\n");
-  }
-}
-
 double size_of(Complex residual) noexcept {
   const double re = abs(residual.re);
   const double im = abs(residual.im);
@@ -392,9 +357,9 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   out.label("5 % settling time");
   if (!settling.found) {
     out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
-    return;
+  } else {
+    out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
   }
-  out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
   if (duration_s < settling.time_s) {
     const bool is_much = duration_s < kMuchShorter * settling.time_s;
     out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
@@ -669,6 +634,41 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
 
 }  // namespace
 
+void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
+  const double reduced = fit.chi2 / fit.dof;
+  const double limit = reduced_chi_square_limit(fit.dof);
+  if (reduced > limit) {
+    out.line();
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: chi2/dof = ")
+        .general(reduced, 4)
+        .text(" is above ");
+    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
+    out.text(
+        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
+        "  these frequencies, or the stated uncertainties are too small. The standard\n"
+        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
+        "  then too small by about the Birge ratio of ");
+    out.general(fit.birge_ratio, 3).text(".\n");
+    out.text(
+        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
+        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
+        "  and that the table's uncertainties are expanded ones (k = 2).\n");
+    if (cause != nullptr) {
+      write_cause(cause, out);
+    }
+    return;
+  }
+  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
+  if (reduced < low) {
+    out.line();
+    out.part(ReportPart::kNote).text("  Note: chi2/dof is below ").general(low, 3);
+    out.text(
+        ", which one fit in a hundred undercuts: the points scatter\n"
+        "  less than the stated uncertainties say. These may be too large.\n");
+  }
+}
+
 void write_points_source(const EvaluationResults& results, const ReportContext& context,
                          ReportWriter& out) noexcept {
   out.label("Device");
@@ -682,7 +682,7 @@ double reduced_chi_square_limit(std::size_t dof) noexcept {
 void write_report(const EvaluationResults& results, const ReportContext& context, TextWriter& out,
                   ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
-  write_title(context.labels, writer);
+  write_title(context, writer);
   write_figures(results, writer);
   write_input(results, context, writer);
   if (context.measurement != nullptr) {
