@@ -196,6 +196,31 @@ class WarningsOfReports(Tables, ProgramTest):
         self.assert_warnings(["--points", self.write([TablesThereAndBack.NAMES, *rows]), *QUICK], "fit_draws",
                              "monte_carlo", "monte_carlo")
 
+    def test_certify_warns_of_the_same(self):
+        for table, about, words in [
+            (TABLES / "plain.csv", [], None),
+            (DATA / "djb_a1800v.csv", ["fit"], "WARNING: chi2/dof is above what one fit in a hundred exceeds"),
+            (TABLES / "piezo_01.csv", ["damping"], "WARNING: the points do not determine beta"),
+        ]:
+            with self.subTest(table=table.name):
+                certify = ["certify", "--points", table, "--time", "0.001", "--effort", "0.1"]
+                proven = json.loads(self.succeed(*certify, "--json"))
+                report = self.json_of("--points", table, "--time", "0.001", *QUICK)
+                self.assertEqual([w["about"] for w in proven["warnings"] if w["about"] != "energy"], about)
+                known = [warning for warning in report["warnings"] if warning["about"] != "monte_carlo"]
+                self.assertEqual(proven["warnings"], known)
+                self.assertEqual(proven["E_range"], report["fit"].get("E_range"))
+                text = self.succeed(*certify)
+                self.assertEqual(text.count("WARNING"), len(known))
+                self.assertIn(words or "Proven", text)
+
+    def test_compare_refuses_a_sensitivity_alone(self):
+        for name in ["plain.csv", "handheld_160hz.csv"]:
+            results = self.succeed("report", "--points", TABLES / name, *QUICK, "--json")
+            (self.directory / name).with_suffix(".json").write_text(results)
+        self.refuse(["compare", "plain.json", "handheld_160hz.json"], "handheld_160hz.json",
+                    "its points determine the sensitivity alone")
+
     def test_a_measurement_that_failed(self):
         self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")
         results = json.loads((self.directory / "out/results.json").read_text())
