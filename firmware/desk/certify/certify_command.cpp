@@ -2,16 +2,13 @@
 #include "desk/certify/certify_command.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <string_view>
-#include <unistd.h>
 #include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
@@ -34,7 +31,7 @@
 #include "desk/compare/name_lines.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/rounding.hpp"
-#include "desk/files/safe_directory.hpp"
+#include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/fit_causes.hpp"
 
@@ -110,61 +107,6 @@ Problem parse(Span<const std::string_view> arguments, CertifyOptions& options) {
   }
   return check_report_options(all, options.report);
 }
-
-// A file that appears under its name when it is complete.
-class CertificateFile final {
- public:
-  explicit CertificateFile(std::string path) : path_(std::move(path)) {}
-  CertificateFile(const CertificateFile&) = delete;
-  CertificateFile& operator=(const CertificateFile&) = delete;
-  ~CertificateFile() {
-    if (file_ != nullptr) {
-      std::fclose(file_);
-      std::remove(temporary().c_str());
-    }
-  }
-
-  // Before the long work.
-  Problem open() {
-    if (!path_.empty() && is_irregular(path_)) {
-      return bad_input(
-          "--out: " + printable(path_) +
-          ": not a regular file; expected the name of a new file or of one to replace");
-    }
-    file_ = path_.empty() ? nullptr : std::fopen(temporary().c_str(), "wbx");
-    return file_ == nullptr && !path_.empty()
-               ? bad_input("--out: " + printable(path_) + ": " + std::strerror(errno) +
-                           "; expected a file in a directory that can be written to")
-               : Problem{};
-  }
-
-  Problem write(const ProvenEnergy& proven) {
-    if (file_ == nullptr) {
-      return {};
-    }
-    FileSink sink(file_);
-    app::TextWriter out(sink);
-    write_certificate(proven, out);
-    sink.flush();
-    errno = 0;
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    const bool done = sink.error() == 0 && closed && sync_file(temporary()) &&
-                      !is_irregular(path_) && std::rename(temporary().c_str(), path_.c_str()) == 0;
-    if (!done) {
-      const int error = sink.error() != 0 ? sink.error() : errno;
-      std::remove(temporary().c_str());
-      return fault(printable(path_) + ": " + std::strerror(error) + "; it has not been kept");
-    }
-    return {};
-  }
-
- private:
-  std::string temporary() const { return path_ + "." + std::to_string(getpid()); }
-
-  std::string path_;
-  std::FILE* file_ = nullptr;
-};
 
 // The draws of the fit, and the range of E where the points leave the damping open: what a report
 // may have to warn of. Where it cannot have them, the proof does not need them.
@@ -448,7 +390,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
   // Only the estimate's energy is wanted.
   options.report.settings.trend_count = 0;
   static app::EvaluationResults evaluation;
-  CertificateFile file(options.out_path);
+  SingleFile file(options.out_path);
   Problem problem = file.open();
   problem = problem ? problem : find_energy(options.report, evaluation);
   if (problem) {
@@ -481,7 +423,8 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.seconds = seconds_since(start);
   result.certificate_path = options.out_path;
   // What has been proven is printed, whatever becomes of the file.
-  const Problem unwritten = file.write(result.proven);
+  const Problem unwritten =
+      file.write([&result](app::TextWriter& out) { write_certificate(result.proven, out); });
   if (unwritten) {
     result.certificate_path.clear();
   }
