@@ -84,6 +84,13 @@ class TablesOfOneDevice(Tables, ProgramTest):
         self.assertIn("there only the magnitude is fitted", self.succeed("report", "--points",
                                                                          TABLES / "magnitude_only.csv", *QUICK))
 
+    def test_what_was_held_is_said_to_be(self):
+        rows = [f"{f!r},{a!r},{0.01 * a!r}" for f, a, *_ in table_rows()[:6]]  # To 0.03 f0: all but flat.
+        name = self.write(["f_hz,amplitude,u_amplitude", *rows])
+        text = self.succeed("report", "--points", name, *QUICK, "--damping", "0.3182", "--limit", "1")
+        self.assertRegex(text, r"\n  beta +0.3182 +held +held +held  1\n")
+        self.assertEqual(text.count("held"), 4)  # And in the note on the damping.
+
     def test_phases_that_say_nothing(self):
         results = self.fit("phase_unknown_1000deg.csv")
         self.assertEqual(results["fit"]["unknown_phases"], 40)

@@ -61,15 +61,15 @@ struct Result {
 
   double sensitivity = 0.0;  ///< In V/(m/s^2).
   std::array<Figure, kFigureKinds> figures = {};
-  double delay_s = 0.0;             ///< That has been taken out of the matched figure.
-  std::string matched_refused;      ///< Why there is no matched figure; empty if not known.
-  bool has_ideal = false;           ///< The next is known.
-  double ideal_percent = 0.0;       ///< Root of E/T of an ideal sensor, in percent of S a.
-  double probability = 0.0;         ///< Of the intervals; 0 where there are none.
-  bool energy_u_is_of_box = false;  ///< u(E) follows from the trials over the box.
-  bool fit_warns = false;           ///< The points do not follow the fitted model.
-  bool is_simulated = false;        ///< The bench was.
-  bool has_open_damping = false;    ///< The points do not determine beta.
+  double delay_s = 0.0;                     ///< That has been taken out of the matched figure.
+  std::string matched_refused;              ///< Why there is no matched figure; empty if not known.
+  bool has_ideal = false;                   ///< The next is known.
+  double ideal_percent = 0.0;               ///< Root of E/T of an ideal sensor, in percent of S a.
+  double probability = 0.0;                 ///< Of the intervals; 0 where there are none.
+  bool energy_u_is_of_box = false;          ///< u(E) follows from the trials over the box.
+  bool fit_warns = false;                   ///< The points do not follow the fitted model.
+  bool is_simulated = false;                ///< The bench was.
+  bool has_open_damping = false;            ///< The points do not determine beta.
   std::vector<std::string> other_warnings;  ///< What else its report warns of, a line each.
 
   const Figure& figure(FigureKind kind) const noexcept {

@@ -20,6 +20,7 @@ constexpr double kLeastCorrelationShown = 0.0005;  // Less would be -0.000.
 // Below it the energies leave a line by 4 % of their range or more.
 constexpr double kLeastTrendCorrelation = 0.999;
 constexpr double kQuantile99 = 2.326347874040841;  // Of N(0, 1) at 99 %.
+constexpr std::size_t kDamping = 2;                // Of the parameters.
 constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
@@ -170,13 +171,14 @@ struct Estimate {
   double value;
   double u;
   double u_by_draws;
+  bool is_held;
 };
 
 void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
   const int decimals = decimals_for(estimate.u);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(11).text(estimate.name);
-  if (estimate.u == 0.0) {
+  if (estimate.is_held) {
     out.cell(15).general(estimate.value, 4);
     for (int i = 0; i < 3; ++i) {
       out.cell(15).text("held");
@@ -202,15 +204,18 @@ void write_estimates(const EvaluationResults& results, ReportWriter& out) noexce
   out.cell(15).text("U (k = 2)");
   out.cell(0).text("  unit").line();
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
-    const Estimate estimate = {kParameterNames[i], kParameterUnits[i],
+    const Estimate estimate = {kParameterNames[i],
+                               kParameterUnits[i],
                                estimate_of(results.fit.result().model, i),
-                               sqrt(results.covariance(i, i)), sqrt(draws.covariance[i][i])};
+                               sqrt(results.covariance(i, i)),
+                               sqrt(draws.covariance[i][i]),
+                               i == kDamping && results.fit.result().is_damping_held};
     write_estimate(estimate, out);
     if (i == 0 && out.in_g()) {
       constexpr double kG = kStandardGravity_mps2;
-      write_estimate(
-          {estimate.name, "V/g", kG * estimate.value, kG * estimate.u, kG * estimate.u_by_draws},
-          out);
+      write_estimate({estimate.name, "V/g", kG * estimate.value, kG * estimate.u,
+                      kG * estimate.u_by_draws, false},
+                     out);
     }
   }
   out.part(ReportPart::kText);
