@@ -296,6 +296,48 @@ class TablesThereAndBack(Tables, ProgramTest):
         self.assertIn("A delay of 0.53 ms of the device's channel would bring chi2/dof from", text)
 
 
+class TablesAtTheConsole(Tables, ProgramTest):
+    def ask(self, name, *queries):
+        """The answers of each query until the next *OPC?, which is 1, and then the error of it."""
+        rows = (TABLES / name).read_text().splitlines()[1:]
+        lines = [f"TRAC:FRES:DATA {row}" for row in rows] + ["CALC:ENER:TIME 0.001"]
+        for query in queries:
+            lines += [query, "*OPC?", "SYST:ERR?"]
+        answers = self.run_program("scpi", input="\n".join([*lines, ""]).encode()).stdout.decode().splitlines()
+        found = []
+        for _ in queries:
+            end = answers.index("1")
+            found.append((answers[0].split(",") if end else None, answers[end + 1]))
+            answers = answers[end + 2:]
+        return found
+
+    NONE = '0,"No error"'
+
+    def test_damping_that_is_left_open(self):
+        report = self.fit("piezo_00.csv", "--time", "0.001")
+        fit, known, trials = self.ask("piezo_00.csv", "CALC:IDEN?", "CALC:UNC?", "CALC:MCAR?")
+        numbers = list(map(float, fit[0]))
+        self.assertAlmostEqual(numbers[2], -0.0099, delta=1e-4)
+        self.assertAlmostEqual(numbers[5], 0.0134, delta=1e-4)
+        self.assertEqual(numbers[6:], [report["model"]["chi2"], report["model"]["dof"]])
+        # The same range of E as in the report in place of both intervals; u is not a number (9.91E37 in SCPI).
+        self.assertEqual(list(map(float, known[0])), [9.91e37] * 2 + 2 * report["fit"]["E_range"] + [0])
+        self.assertEqual((fit[1], known[1]), (self.NONE, self.NONE))
+        self.assertEqual(trials[0], None)
+        self.assertIn("beta left open: nearer f0, or CALC:MOD", trials[1])
+
+    def test_points_far_below_the_resonance(self):
+        report = self.fit("handheld_160hz.csv")["model"]
+        fit, energy, again = self.ask("handheld_160hz.csv", "CALC:IDEN?", "CALC:ENER?", "CALC:IDEN?")
+        numbers = list(map(float, fit[0]))
+        self.assertEqual(numbers[:6], [report["S"], 9.91e37, 9.91e37, report["uS"], 9.91e37, 9.91e37])
+        self.assertEqual(numbers[7], 7)  # Five points, two equations each, three unknowns.
+        self.assertEqual(fit[1], self.NONE)
+        self.assertEqual(energy[0], None)
+        self.assertIn("points give S alone: more, nearer to f0", energy[1])
+        self.assertEqual(again, fit)
+
+
 class TablesByChance(Tables, ByHand):
     """Devices far above their points, drawn ten times each."""
 
