@@ -69,4 +69,36 @@ char* mkdtemp(char* path) noexcept {
 FILE* fopen(const char* path, const char* mode) {
   return is_struck() ? nullptr : next<FILE* (*)(const char*, const char*)>("fopen")(path, mode);
 }
+
+// A buffer of the library goes to the disk about once in so many bytes; only then can a write fail.
+size_t fwrite(const void* text, size_t size, size_t count, FILE* file) {
+  using Write = size_t (*)(const void*, size_t, size_t, FILE*);
+  constexpr size_t kBuffer = 4096;
+  static size_t written = 0;
+  const size_t before = written / kBuffer;
+  written += file == stdout || file == stderr ? 0 : size * count;
+  const bool fails = written / kBuffer != before && is_struck();
+  return fails ? 0 : next<Write>("fwrite")(text, size, count, file);
+}
+
+int fflush(FILE* file) {
+  const bool is_counted = file != stdout && file != stderr && file != nullptr;
+  return is_counted && is_struck() ? EOF : next<int (*)(FILE*)>("fflush")(file);
+}
+
+int fclose(FILE* file) {
+  const bool fails = is_struck();
+  const int error = errno;
+  const int result = next<int (*)(FILE*)>("fclose")(file);
+  errno = fails ? error : errno;
+  return fails ? EOF : result;
+}
+
+int remove(const char* path) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*)>("remove")(path);
+}
+
+int rmdir(const char* path) noexcept {
+  return is_struck() ? -1 : next<int (*)(const char*)>("rmdir")(path);
+}
 }

@@ -298,6 +298,36 @@ class CompareInBand(Comparing, ProgramTest):
         self.compare(files[1], files[1] | {"labels": {}}, by="matched")
         self.assertIn("SIMULATION: no result was measured", self.succeed("compare", "0.json", "1.json"))
 
+    def test_damping_that_the_points_leave_open(self):
+        open_one = result(2e-3, None, matched=1.0, u_band=None, bound=2.1e-3, device="open") | {
+            "fit": {"determined": "all but beta", "E_range": [1e-3, 9e-3]},
+            "warnings": [{"about": "damping", "text": "the points do not determine beta"}]}
+        open_one["band"]["matched"]["bound_percent"] = 1.01
+        for by in ["matched", "energy"]:
+            found = self.compare(open_one, result(5e-3, matched=3.0, device="good"),
+                                 result(9.5e-3, matched=9.0, device="poor"), by=by)
+            # It has the place of its figure, and none of the others is told apart from it, outside its range either.
+            self.assertEqual(self.ranks(found), [("0.json", 1, 3), ("1.json", 1, 2), ("2.json", 2, 3)])
+            self.assertEqual([(p["compared"], p["told_apart"], p["proven"]) for p in found["pairs"]],
+                             [(True, False, False), (True, True, False)])
+            self.assertEqual([d["damping_open"] for d in found["devices"]], [True, False, False])
+            text = self.succeed("compare", "0.json", "1.json", "2.json", "--by", by)
+            self.assertIn("WARNING: Told apart from no other, because the points leave the damping open: open.", text)
+            self.assertRegex(text, r"open and good: CANNOT BE TOLD APART: the points of open leave its\s+damping open, "
+                                   r"E from\s+1.000e-03 to\s+9.000e-03 V\^2 s")
+            self.assertRegex(text, r"\n  1-3   open    beta +\S")
+        self.assertIn("1.000e-03 to 9.000e-03", text)
+
+    def test_warnings_of_the_reports(self):
+        files = [result(matched=1.0, device="A"), result(matched=3.0, device="B"), result(matched=5.0, device="C")]
+        files[0]["warnings"] = files[2]["warnings"] = [{"about": "fit_draws", "text": "u is \x1bdoubtful"}]
+        found = self.compare(*files, by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 1), ("1.json", 2, 2), ("2.json", 3, 3)])
+        text = self.succeed("compare", "0.json", "1.json", "2.json")
+        self.assertEqual(text.count("WARNING"), 1)
+        self.assertRegex(text, "WARNING: Warned of by the report of A and C: u is .doubtful\\.")
+        self.assertNotIn("\x1b", text)
+
     def test_other_warnings_are_no_marks(self):
         files = [result(matched=1.0), result(matched=3.0)]
         files[0]["warnings"] = [{"about": "monte_carlo", "text": "fit"}]
@@ -534,8 +564,8 @@ class ComparePage(Comparing, ProgramTest):
         page = self.page(result(matched=1.0, device="A"), result(matched=2.0, device="B", simulated=True),
                          result(matched=3.0, device="C", fit_warns=True))
         self.assertIn("<title>Comparison of 3 accelerometers (simulation) - emax</title>", page)
-        start = page.split("</header>")[1]
-        self.assertTrue(start.startswith("\n<p class=\"warning\">SIMULATION: not every result was measured"), start[:80])
+        self.assertIn("<body class=\"marked\">\n<div class=\"banner\" role=\"note\">SIMULATION: not every result was measured",
+                      page)
         self.assertIn("<p class=\"warning\">Not compared, because chi-square of the fit warns: C.", page)
         self.assertIn("<strong>not compared</strong>: the bench of B was simulated.", page)
         self.assertNotIn("told apart:", page)

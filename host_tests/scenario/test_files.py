@@ -66,6 +66,38 @@ class FilesOfInterruptedRuns(ProgramTest):
         self.assertGreater(self.run_through("EMAX_FAIL_AT", [0, 2, 3]), 8)
 
 
+@unittest.skipIf(not SHIM, "no library to preload")
+class CertificateOfInterruptedRuns(ProgramTest):
+    def prove(self, order, **options):
+        certify = ["certify", "--model", "1.037,4073,0.3182", "--order", order, "--time", "0.0005", "--effort", "0.001",
+                   "--out", "out/proof"]
+        return self.run_program(*certify, **options)
+
+    def proven_order(self):
+        return json.loads((self.directory / "out/proof").read_text())["model"]["order"]
+
+    def run_through(self, setting, codes):
+        (self.directory / "out").mkdir()
+        (self.directory / "out/.emax.proof.notes").write_text("not ours")
+        for number in range(1, 10_000):
+            self.assertEqual(self.prove("10").returncode, 0)
+            self.assertEqual(sorted(os.listdir(self.directory / "out")), [".emax.proof.notes", "proof"])
+            result = self.prove("4", **shim(**{setting: number}))
+            self.assertEqual(self.proven_order(), 4 if result.returncode == 0 else 10, number)
+            if result.returncode == 0:
+                return number
+            self.assertIn(result.returncode, codes, result.stderr)
+            if result.returncode == 3:
+                self.assertIn(b"Gap", result.stdout)  # What has been proven is printed all the same.
+        return self.fail("the run never ended by itself")
+
+    def test_killed_at_every_call(self):
+        self.assertGreater(self.run_through("EMAX_KILL_AT", [-signal.SIGKILL]), 4)
+
+    def test_disk_full_at_every_call(self):
+        self.assertGreater(self.run_through("EMAX_FAIL_AT", [2, 3]), 4)
+
+
 class FilesThatAreKept(ProgramTest):
     def test_parents_are_made_and_taken_away_again(self):
         self.succeed(*HANDHELD, "--out", "a/b/c")

@@ -213,7 +213,7 @@ class Pictures(PictureTest, ProgramTest):
             with self.subTest(name):
                 texts = texts_of(self.out(f"{name}.svg"))
                 self.assertLessEqual({*words, conditions[name]}, set(texts))
-                self.assertTrue(texts[0].startswith("Sensor 1: ") or any(t.startswith("Sensor 1: ") for t in texts))
+                self.assertTrue(texts[0].startswith("SIMULATION: Sensor 1: ") or any(t.startswith("SIMULATION: Sensor 1: ") for t in texts))
                 svg = self.content(f"{name}.svg")
                 self.assertNotIn("<script", svg)
                 references = set(re.findall(r"""href=['"]([^'"]*)""", svg))
@@ -591,7 +591,7 @@ class Page(PageTest, ProgramTest):
             with self.subTest(arguments):
                 self.report(*arguments)
                 self.open()
-                shown = iter(self.browser.evaluate("document.querySelector('main').textContent").split())
+                shown = iter(self.browser.evaluate("document.body.textContent").split())
                 report = self.content("report.txt").replace("^2", "²").replace("+-", "±")
                 # Every word in this order, but for headings, which are capitals in the text. Cells touch in a page.
                 words = [word for word in report.split() if not word.isupper() or any(c.isdigit() for c in word)]
@@ -622,7 +622,7 @@ class Page(PageTest, ProgramTest):
         results = json.loads(self.content("results.json"))
         self.open()
         headline = self.browser.evaluate(
-            "[...document.querySelectorAll('.headline dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
+            "[...document.querySelectorAll('.headline div:not(.warns) dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
         )
         energy, band, known = results["energy"], results["band"], results["uncertainty"]
         for shown, figure, decimals in [(headline[0], band["matched"], 3), (headline[1], band, 3)]:
@@ -654,21 +654,58 @@ class Page(PageTest, ProgramTest):
         self.assertRegex(headline, r"5\.11[45]\d × 10−3 V² s")
         self.assertIn("all uncertainties are zero", headline)
 
+    LOOK = """['.headline', '.headline .first dd'].map(name => getComputedStyle(document.querySelector(name)))
+      .map(style => [style.borderTopStyle, style.fontWeight, style.color])"""
+
     def test_warnings_are_seen(self):
         self.report(*TABLE1, *QUICK)
         self.open()
+        lines = self.browser.evaluate("document.querySelector('.headline .warns').innerText").splitlines()
+        self.assertEqual([line.split(":")[0] for line in lines], ["2 warnings", "Fit", "Monte Carlo"])
+        warnings = json.loads(self.content("results.json"))["warnings"]
+        self.assertEqual([line.split(": ", 1)[1] for line in lines[1:]], [warning["text"] for warning in warnings])
         warnings = self.browser.evaluate("[...document.querySelectorAll('.warning')].map(p => p.innerText)")
-        self.assertEqual(warnings[0], "2 warnings, in: Fit, Monte Carlo")
-        self.assertRegex(warnings[1], r"^WARNING: chi2/dof = 106")
-        self.assertRegex(warnings[2], r"^WARNING: fewer trials")
+        self.assertRegex(warnings[0], r"^WARNING: chi2/dof = 106")
+        self.assertRegex(warnings[1], r"^WARNING: fewer trials")
         links = self.browser.evaluate(
-            "[...document.querySelectorAll('.warning a')].every(a => document.querySelector(a.getAttribute('href')))"
+            "[...document.querySelectorAll('.warns a')].map(a => document.querySelector(a.getAttribute('href')).id)"
         )
-        self.assertTrue(links)
+        self.assertEqual(links, ["fit", "monte-carlo"])
+        (border, _, _), (_, weight, colour) = self.browser.evaluate(self.LOOK)
+        self.assertEqual((border, weight), ("dashed", "400"))
+        self.assertNotEqual(colour, self.browser.evaluate("getComputedStyle(document.body).color"))
+
+    def test_a_page_without_warnings(self):
         self.report(*MODEL, "--trials", "200000", "--trend", "none")
         self.open()
-        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.warning').length"), 0)
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.warning, .warns, .banner').length"), 0)
         self.assertIn("No warnings", self.browser.evaluate("document.body.innerText"))
+        (border, _, _), (_, weight, colour) = self.browser.evaluate(self.LOOK)
+        self.assertEqual((border, weight), ("solid", "700"))
+        self.assertEqual(colour, self.browser.evaluate("getComputedStyle(document.body).color"))
+
+    def test_a_simulation_says_so(self):
+        self.report("--trials", "1000", "--device", "Toy")
+        words = "SIMULATION: no real sensor was measured."
+        self.assertTrue(self.content("report.txt").startswith(words + "\n"))
+        self.assertTrue(json.loads(self.content("results.json"))["simulated"])
+        for name in ["frequency_response", "impulse_response", "signal", "histogram", "trend"]:
+            self.assertIn("SIMULATION: Toy: ", self.content(f"{name}.svg"), name)
+        self.open()
+        self.assertEqual(self.browser.evaluate("document.title"), "Toy (simulation) - emax report")
+        self.browser.evaluate("window.scrollTo(0, 2000)")
+        top, shown = self.browser.evaluate("""(banner => [banner.getBoundingClientRect().top, banner.innerText])(
+            document.body.firstElementChild)""")
+        self.assertEqual((top, shown), (0, words))  # It stays in sight.
+
+    def test_every_printed_page_of_a_simulation_says_so(self):
+        self.report("--trials", "1000")
+        self.open()
+        text = subprocess.run(["pdftotext", "-", "-"], input=self.browser.pdf(), capture_output=True, check=True).stdout
+        pages = text.decode().split("\f")[:-1]
+        self.assertGreater(len(pages), 3)
+        for page in pages:
+            self.assertEqual(page.count("SIMULATION: no real sensor was measured."), 1)
 
     def test_measurement_that_failed(self):
         result = self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")

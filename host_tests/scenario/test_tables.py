@@ -6,6 +6,7 @@ usage: test_tables.py PROGRAM DATA_DIRECTORY [unittest arguments]
 """
 
 import cmath
+import json
 import math
 import random
 
@@ -82,6 +83,13 @@ class TablesOfOneDevice(Tables, ProgramTest):
                 self.assertEqual(results["model"]["dof"], 37)
         self.assertIn("there only the magnitude is fitted", self.succeed("report", "--points",
                                                                          TABLES / "magnitude_only.csv", *QUICK))
+
+    def test_what_was_held_is_said_to_be(self):
+        rows = [f"{f!r},{a!r},{0.01 * a!r}" for f, a, *_ in table_rows()[:25]]  # To half of f0.
+        name = self.write(["f_hz,amplitude,u_amplitude", *rows])
+        text = self.succeed("report", "--points", name, *QUICK, "--damping", "0.3182", "--limit", "1")
+        self.assertRegex(text, r"\n  beta +0.3182 +held +held +held  1\n")
+        self.assertEqual(text.count("held"), 4)  # And in the note on the damping.
 
     def test_phases_that_say_nothing(self):
         results = self.fit("phase_unknown_1000deg.csv")
@@ -166,6 +174,68 @@ class TablesOfPiezos(Tables, ByHand):
         self.assertEqual(self.files(), ["out", "out/report.txt", "out/results.json"])
 
 
+class WarningsOfReports(Tables, ProgramTest):
+    """What the text calls a warning is one in results.json, and the other way round."""
+
+    def assert_warnings(self, arguments, *about):
+        text = self.succeed("report", *arguments, "--out", "out")
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertEqual([warning["about"] for warning in results["warnings"]], list(about))
+        self.assertEqual(text.count("WARNING"), len(about))
+        self.assertFalse(results["simulated"])
+
+    def test_each_that_a_table_can_bring(self):
+        short = ["--time", "0.001", "--trend", "none"]
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none"])
+        self.assert_warnings(["--points", TABLES / "plain.csv", *QUICK], "monte_carlo")
+        self.assert_warnings(["--points", DATA / "djb_a1800v.csv", "--trend", "none"], "fit")
+        self.assert_warnings(["--points", TABLES / "piezo_01.csv", *short], "damping")
+        self.assert_warnings(["--points", TABLES / "handheld_160hz.csv"], "energy")
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none", "--time", "0.0005"], "energy")
+        self.assert_warnings(["--points", TABLES / "plain.csv", "--trend", "none", "--cutoff", "5000"], "energy")
+        # 2.4 % of the draws are below 0.0001.
+        wide = ["--model", "1.037,4073,0.02,0.001,4,0.0101", *QUICK, "--time", "0.005", "--distribution", "normal"]
+        self.assert_warnings(wide, "monte_carlo", "monte_carlo", "uncertainty")
+
+    def test_uncertainties_that_are_too_large_for_a_linear_law(self):
+        U = 0.5
+        rows = [f"{f!r},{a!r},{p!r},{U * a!r},{57 * U!r}" for f, a, p, *_ in table_rows()]
+        self.assert_warnings(["--points", self.write([TablesThereAndBack.NAMES, *rows]), *QUICK], "fit_draws",
+                             "monte_carlo", "monte_carlo")
+
+    def test_certify_warns_of_the_same(self):
+        for table, about, words in [
+            (TABLES / "plain.csv", [], None),
+            (DATA / "djb_a1800v.csv", ["fit"], "WARNING: chi2/dof is above what one fit in a hundred exceeds"),
+            (TABLES / "piezo_01.csv", ["damping"], "WARNING: the points do not determine beta"),
+        ]:
+            with self.subTest(table=table.name):
+                certify = ["certify", "--points", table, "--time", "0.001", "--effort", "0.1"]
+                proven = json.loads(self.succeed(*certify, "--json"))
+                report = self.json_of("--points", table, "--time", "0.001", *QUICK)
+                self.assertEqual([w["about"] for w in proven["warnings"] if w["about"] != "energy"], about)
+                known = [warning for warning in report["warnings"] if warning["about"] != "monte_carlo"]
+                self.assertEqual(proven["warnings"], known)
+                self.assertEqual(proven["E_range"], report["fit"].get("E_range"))
+                text = self.succeed(*certify)
+                self.assertEqual(text.count("WARNING"), len(known))
+                self.assertIn(words or "Proven", text)
+
+    def test_compare_refuses_a_sensitivity_alone(self):
+        for name in ["plain.csv", "handheld_160hz.csv"]:
+            results = self.succeed("report", "--points", TABLES / name, *QUICK, "--json")
+            (self.directory / name).with_suffix(".json").write_text(results)
+        self.refuse(["compare", "plain.json", "handheld_160hz.json"], "handheld_160hz.json",
+                    "its points determine the sensitivity alone")
+
+    def test_a_measurement_that_failed(self):
+        self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertEqual([warning["about"] for warning in results["warnings"]], ["measurement"])
+        self.assertTrue(results["simulated"])
+        self.assertTrue((self.directory / "out/report.txt").read_text().startswith("SIMULATION: "))
+
+
 def table_rows():
     lines = (TABLES / "plain.csv").read_text().splitlines()[1:]
     return [[float(cell) for cell in line.split(",")] for line in lines]
@@ -224,6 +294,48 @@ class TablesThereAndBack(Tables, ProgramTest):
         name = self.write([self.NAMES] + [",".join(map(repr, row)) for row in rows])
         text = self.succeed("report", "--points", name, *QUICK)
         self.assertIn("A delay of 0.53 ms of the device's channel would bring chi2/dof from", text)
+
+
+class TablesAtTheConsole(Tables, ProgramTest):
+    def ask(self, name, *queries):
+        """The answers of each query until the next *OPC?, which is 1, and then the error of it."""
+        rows = (TABLES / name).read_text().splitlines()[1:]
+        lines = [f"TRAC:FRES:DATA {row}" for row in rows] + ["CALC:ENER:TIME 0.001"]
+        for query in queries:
+            lines += [query, "*OPC?", "SYST:ERR?"]
+        answers = self.run_program("scpi", input="\n".join([*lines, ""]).encode()).stdout.decode().splitlines()
+        found = []
+        for _ in queries:
+            end = answers.index("1")
+            found.append((answers[0].split(",") if end else None, answers[end + 1]))
+            answers = answers[end + 2:]
+        return found
+
+    NONE = '0,"No error"'
+
+    def test_damping_that_is_left_open(self):
+        report = self.fit("piezo_00.csv", "--time", "0.001")
+        fit, known, trials = self.ask("piezo_00.csv", "CALC:IDEN?", "CALC:UNC?", "CALC:MCAR?")
+        numbers = list(map(float, fit[0]))
+        self.assertAlmostEqual(numbers[2], -0.0099, delta=1e-4)
+        self.assertAlmostEqual(numbers[5], 0.0134, delta=1e-4)
+        self.assertEqual(numbers[6:], [report["model"]["chi2"], report["model"]["dof"]])
+        # The same range of E as in the report in place of both intervals; u is not a number (9.91E37 in SCPI).
+        self.assertEqual(list(map(float, known[0])), [9.91e37] * 2 + 2 * report["fit"]["E_range"] + [0])
+        self.assertEqual((fit[1], known[1]), (self.NONE, self.NONE))
+        self.assertEqual(trials[0], None)
+        self.assertIn("beta left open: nearer f0, or CALC:MOD", trials[1])
+
+    def test_points_far_below_the_resonance(self):
+        report = self.fit("handheld_160hz.csv")["model"]
+        fit, energy, again = self.ask("handheld_160hz.csv", "CALC:IDEN?", "CALC:ENER?", "CALC:IDEN?")
+        numbers = list(map(float, fit[0]))
+        self.assertEqual(numbers[:6], [report["S"], 9.91e37, 9.91e37, report["uS"], 9.91e37, 9.91e37])
+        self.assertEqual(numbers[7], 7)  # Five points, two equations each, three unknowns.
+        self.assertEqual(fit[1], self.NONE)
+        self.assertEqual(energy[0], None)
+        self.assertIn("points give S alone: more, nearer to f0", energy[1])
+        self.assertEqual(again, fit)
 
 
 class TablesByChance(Tables, ByHand):

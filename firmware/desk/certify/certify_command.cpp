@@ -2,21 +2,19 @@
 #include "desk/certify/certify_command.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <string_view>
-#include <unistd.h>
 #include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/evaluate/evaluation_workspace.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/decimal.hpp"
 #include "emax/bound/energy_certificate.hpp"
 #include "emax/identify/frequency_response.hpp"
@@ -30,10 +28,12 @@
 #include "desk/cli/options.hpp"
 #include "desk/cli/stop_request.hpp"
 #include "desk/cli/value_text.hpp"
+#include "desk/compare/name_lines.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/rounding.hpp"
-#include "desk/files/safe_directory.hpp"
+#include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
+#include "desk/report/fit_causes.hpp"
 
 namespace emax::desk {
 
@@ -79,8 +79,8 @@ Syntax syntax_of(CertifyOptions& options) {
     syntax.options.push_back(report_option(report, name, is_order ? "order, 2 to 15" : nullptr));
   }
   syntax.options.push_back(report_option(report, "json",
-                                         "{E,bound,gap,cells,multipliers,nodes,seconds} on\n"
-                                         "standard output instead of text"));
+                                         "{E,bound,gap,cells,multipliers,nodes,seconds,\n"
+                                         "E_range,warnings} on standard output instead of text"));
   const std::string heading = syntax.options.back().heading;
   syntax.options.push_back({"effort", heading, "SECONDS", "60", "a number of seconds above 0",
                             "how long to work on the bound", [&options](std::string_view text) {
@@ -108,60 +108,26 @@ Problem parse(Span<const std::string_view> arguments, CertifyOptions& options) {
   return check_report_options(all, options.report);
 }
 
-// A file that appears under its name when it is complete.
-class CertificateFile final {
- public:
-  explicit CertificateFile(std::string path) : path_(std::move(path)) {}
-  CertificateFile(const CertificateFile&) = delete;
-  CertificateFile& operator=(const CertificateFile&) = delete;
-  ~CertificateFile() {
-    if (file_ != nullptr) {
-      std::fclose(file_);
-      std::remove(temporary().c_str());
-    }
-  }
-
-  // Before the long work.
-  Problem open() {
-    if (!path_.empty() && is_irregular(path_)) {
-      return bad_input(
-          "--out: " + printable(path_) +
-          ": not a regular file; expected the name of a new file or of one to replace");
-    }
-    file_ = path_.empty() ? nullptr : std::fopen(temporary().c_str(), "wbx");
-    return file_ == nullptr && !path_.empty()
-               ? bad_input("--out: " + printable(path_) + ": " + std::strerror(errno) +
-                           "; expected a file in a directory that can be written to")
-               : Problem{};
-  }
-
-  Problem write(const ProvenEnergy& proven) {
-    if (file_ == nullptr) {
-      return {};
-    }
-    FileSink sink(file_);
-    app::TextWriter out(sink);
-    write_certificate(proven, out);
-    sink.flush();
-    errno = 0;
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    const bool done = sink.error() == 0 && closed && sync_file(temporary()) &&
-                      !is_irregular(path_) && std::rename(temporary().c_str(), path_.c_str()) == 0;
-    if (!done) {
-      const int error = sink.error() != 0 ? sink.error() : errno;
-      std::remove(temporary().c_str());
-      return fault(printable(path_) + ": " + std::strerror(error) + "; it has not been kept");
-    }
+// The draws of the fit, and the range of E where the points leave the damping open: what a report
+// may have to warn of. Where it cannot have them, the proof does not need them.
+Problem judge_fit(const ReportOptions& options, app::Evaluation& evaluation,
+                  const app::EvaluationResults& results) {
+  if (evaluation.pursue(options.settings, app::Goal::kReport) != Status::kOk) {
     return {};
   }
-
- private:
-  std::string temporary() const { return path_ + "." + std::to_string(getpid()); }
-
-  std::string path_;
-  std::FILE* file_ = nullptr;
-};
+  ConsoleProgress progress;
+  const auto is_judged = [&results] {
+    return results.has_fit_draws && (!results.is_damping_open() || results.is_cut_done);
+  };
+  while (!is_judged() && !evaluation.done()) {
+    if (stop_requested()) {
+      return stopped();
+    }
+    progress.show(name_of(results.stage), evaluation.progress());
+    evaluation.step();
+  }
+  return {};
+}
 
 // Finds the device and the signal with the largest energy known.
 Problem find_energy(const ReportOptions& options, app::EvaluationResults& results) {
@@ -179,6 +145,7 @@ Problem find_energy(const ReportOptions& options, app::EvaluationResults& result
     evaluation.give_damping(options.damping);
     status = evaluation.start_from_points(imported.points, options.settings, app::Goal::kEnergy);
   }
+  const bool has_points = !options.points_path.empty();
   ConsoleProgress progress;
   while (status == Status::kOk && !evaluation.done() && !results.has_energy) {
     if (stop_requested()) {
@@ -189,7 +156,7 @@ Problem find_energy(const ReportOptions& options, app::EvaluationResults& result
     status = results.status();
   }
   if (status == Status::kOk) {
-    return {};
+    return has_points ? judge_fit(options, evaluation, results) : Problem{};
   }
   StringSink sentence;
   app::TextWriter writer(sentence);
@@ -311,13 +278,35 @@ Problem prove(EnergyCertificate& certificate, double energy, double effort_s,
   return {};
 }
 
-struct Result {
+struct CertifyResult {
+  const app::EvaluationResults* evaluation = nullptr;
   ProvenEnergy proven;
   double seconds = 0.0;
   std::string certificate_path;
 };
 
-void write_json(const Result& result, app::TextWriter& out) {
+// As in results.json.
+void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& out) {
+  out.text(", \"E_range\": ");
+  if (evaluation.has_cut_range) {
+    out.text("[").exact(evaluation.cut_low_v2s).text(", ").exact(evaluation.cut_high_v2s);
+    out.text("]");
+  } else {
+    out.text("null");
+  }
+  out.text(", \"warnings\": [");
+  const char* separator = "";
+  for (const app::Warning warning : app::kWarnings) {
+    if (holds(warning, evaluation, {})) {
+      out.text(separator).text("{\"about\": \"").text(about(warning));
+      out.text("\", \"text\": \"").text(words_of(warning)).text("\"}");
+      separator = ", ";
+    }
+  }
+  out.text("]}\n");
+}
+
+void write_json(const CertifyResult& result, app::TextWriter& out) {
   const EnergyCertificate& certificate = *result.proven.certificate;
   out.text("{\"E\": ").exact(result.proven.energy_v2s);
   out.text(", \"bound\": ").exact(result.proven.bound_v2s());
@@ -325,10 +314,38 @@ void write_json(const Result& result, app::TextWriter& out) {
   out.text(", \"cells\": ").integer(certificate.grid().cells);
   out.text(", \"multipliers\": ").integer(certificate.used_multipliers());
   out.text(", \"nodes\": ").integer(certificate.nodes().size());
-  out.text(", \"seconds\": ").fixed(result.seconds, 1).text("}\n");
+  out.text(", \"seconds\": ").fixed(result.seconds, 1);
+  write_fit_json(*result.evaluation, out);
 }
 
-void write_text(const Result& result, app::TextWriter& out) {
+void write_warning(const std::string& words, app::TextWriter& out) {
+  constexpr double kWidth = 96.0;
+  constexpr std::size_t kMostLines = 8;
+  for (const std::string& line : wrapped("WARNING: " + words, kWidth, kMostLines)) {
+    out.text(line.c_str()).line();
+  }
+}
+
+// What a report on these points warns of: the device that the proof is about may be another one.
+void write_warnings(const app::EvaluationResults& evaluation, app::TextWriter& out) {
+  for (const app::Warning warning : app::kWarnings) {
+    if (holds(warning, evaluation, {})) {
+      write_warning(words_of(warning), out);
+    }
+  }
+  const std::string cause =
+      evaluation.source == app::Source::kPoints ? cause_of(evaluation.fit) : "";
+  if (!cause.empty()) {
+    write_warning(cause, out);
+  }
+  if (evaluation.has_cut_range) {
+    out.text("Range of E  ").scientific(evaluation.cut_low_v2s, 3).text(" to ");
+    out.scientific(evaluation.cut_high_v2s, 3);
+    out.text(" V^2 s over the dampings left open, not proven\n");
+  }
+}
+
+void write_text(const CertifyResult& result, app::TextWriter& out) {
   const ProvenEnergy& proven = result.proven;
   const EnergyCertificate& certificate = *proven.certificate;
   const Accelerometer& device = proven.model->device();
@@ -337,7 +354,9 @@ void write_text(const Result& result, app::TextWriter& out) {
   const double duration_s = proven.signal->duration_s();
   out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
   out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
-  out.text("\nFilter      Butterworth, order ")
+  out.line();
+  write_warnings(*result.evaluation, out);
+  out.text("Filter      Butterworth, order ")
       .integer(static_cast<std::uint64_t>(filter.relative_degree));
   out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
   out.text(" V/(m/s^2)\nSignals     of any shape within +-").general(proven.limit_mps2, 7);
@@ -371,7 +390,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
   // Only the estimate's energy is wanted.
   options.report.settings.trend_count = 0;
   static app::EvaluationResults evaluation;
-  CertificateFile file(options.out_path);
+  SingleFile file(options.out_path);
   Problem problem = file.open();
   problem = problem ? problem : find_energy(options.report, evaluation);
   if (problem) {
@@ -394,7 +413,8 @@ Problem run_certify(Span<const std::string_view> arguments) {
       (problem = prove(work.certificate(), evaluation.maximum.energy, options.effort_s, start))) {
     return problem;
   }
-  Result result;
+  CertifyResult result;
+  result.evaluation = &evaluation;
   result.proven.model = &model;
   result.proven.certificate = &work.certificate();
   result.proven.signal = &evaluation.maximum.signal;
@@ -403,7 +423,8 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.seconds = seconds_since(start);
   result.certificate_path = options.out_path;
   // What has been proven is printed, whatever becomes of the file.
-  const Problem unwritten = file.write(result.proven);
+  const Problem unwritten =
+      file.write([&result](app::TextWriter& out) { write_certificate(result.proven, out); });
   if (unwritten) {
     result.certificate_path.clear();
   }

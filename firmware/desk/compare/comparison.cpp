@@ -105,6 +105,10 @@ bool all_have(const std::vector<Result>& results, FigureKind kind) noexcept {
                      [kind](const Result& result) { return result.figure(kind).exists; });
 }
 
+bool is_comparable(const Result& result) noexcept {
+  return !result.fit_warns && !result.is_simulated;
+}
+
 Problem check_all(const std::vector<Result>& results, FigureKind asked, FigureKind by) {
   for (const Result& result : results) {
     if (asked != FigureKind::kEnergy) {
@@ -143,7 +147,9 @@ void rank_all(Comparison& comparison) {
 
 }  // namespace
 
-bool is_marked(const Result& result) noexcept { return result.fit_warns || result.is_simulated; }
+bool is_marked(const Result& result) noexcept {
+  return result.fit_warns || result.is_simulated || result.has_open_damping;
+}
 
 double probability_of(const Comparison& comparison) noexcept {
   for (const Result& result : comparison.results) {
@@ -160,14 +166,16 @@ Pair compare(const Result& first, const Result& second, FigureKind by) noexcept 
   Pair pair;
   pair.difference = other.value - one.value;
   pair.epsilon = one.epsilon + other.epsilon;
-  pair.is_compared = !is_marked(first) && !is_marked(second);
+  pair.is_compared = is_comparable(first) && is_comparable(second);
+  pair.has_open_damping = first.has_open_damping || second.has_open_damping;
+  const bool may_differ = pair.is_compared && !pair.has_open_damping;
   pair.has_uncertainty = one.has_uncertainty && other.has_uncertainty;
   if (pair.has_uncertainty) {
     pair.expanded = kCoverageFactor * sqrt(one.u * one.u + other.u * other.u);
-    pair.told_apart = pair.is_compared && abs(pair.difference) > pair.expanded + pair.epsilon;
+    pair.told_apart = may_differ && abs(pair.difference) > pair.expanded + pair.epsilon;
   }
   pair.proven =
-      pair.is_compared && one.has_bound && one.bound + one.epsilon < other.value - other.epsilon;
+      may_differ && one.has_bound && one.bound + one.epsilon < other.value - other.epsilon;
   return pair;
 }
 

@@ -18,11 +18,14 @@ struct Pair {
   /// How far the difference can be off beside that, by the way the figures are computed.
   double epsilon = 0.0;
   bool has_uncertainty = false;  ///< Both devices have one.
-  /// Neither of the two is marked. Of others nothing is said: u is too small where the fit warns,
-  /// and a simulated bench says nothing of a device.
+  /// Neither fit warns and neither bench was simulated. Of others nothing is said: u is too small
+  /// where the fit warns, and a simulated bench says nothing of a device.
   bool is_compared = false;
+  /// The points of one of the two do not determine its damping: it has a place, but the other may
+  /// be better or worse.
+  bool has_open_damping = false;
   bool told_apart = false;  ///< Compared, and the difference is beyond its uncertainty.
-  /// Compared, and even the first one's upper bound is below the second one's figure: true at the
+  /// Able to be told apart, and even the first one's upper bound is below the second one's figure: true at the
   /// estimates for whatever signal.
   bool proven = false;
 };
@@ -45,8 +48,8 @@ struct Comparison {
   const Figure& figure(const Result& result) const noexcept { return result.figure(by); }
 };
 
-/// @returns Whether the fit of a device warns or its bench was simulated, so that nobody can say
-/// which of two devices is better.
+/// @returns Whether the fit of a device warns or leaves its damping open, or its bench was
+/// simulated, so that nobody can say which of two devices is better.
 bool is_marked(const Result& result) noexcept;
 
 /// @returns The probability of the intervals that `comparison` has; 0 if it has none.

@@ -65,8 +65,9 @@ void write_ranked(const Figure& figure, TextWriter& out) {
   write_number(true, figure.value, out);
   write_number(figure.has_uncertainty, figure.u, out);
   write_number(figure.has_uncertainty, figure.expanded, out);
-  write_number(figure.has_interval, figure.low, out);
-  write_number(figure.has_interval, figure.high, out);
+  const bool has_ends = figure.has_interval || figure.has_range;
+  write_number(has_ends, figure.low, out);
+  write_number(has_ends, figure.high, out);
   write_number(figure.has_bound, figure.bound, out);
 }
 

@@ -21,7 +21,7 @@ namespace emax::desk {
 /// * E,rms             V^2 s and V
 /// * delay_s           what has been taken out of matched_percent
 /// * S,a               V/(m/s^2) and m/s^2
-/// * mark              fit, sim, both with a blank, or none
+/// * mark              fit, beta, sim, several with blanks, or none
 /// * file
 void write_comparison_csv(const Comparison& comparison, app::TextWriter& out);
 

@@ -60,6 +60,7 @@ void write_device(const Comparison& comparison, std::size_t index, JsonWriter& j
   json.words("serial", result.serial.c_str());
   json.boolean("fit_warns", result.fit_warns);
   json.boolean("simulated", result.is_simulated);
+  json.boolean("damping_open", result.has_open_damping);
   write_ranked(comparison.figure(result), json);
   write_figures(result, json);
   json.words("file", result.path.c_str());

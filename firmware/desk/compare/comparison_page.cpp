@@ -182,10 +182,8 @@ void write_comparison_page(const Comparison& comparison, const std::string& svg,
       "Comparison of " + std::to_string(comparison.results.size()) + " accelerometers";
   std::string html =
       page_opening(title, std::string(banner.empty() ? "" : " (simulation)") + " - emax",
-                   "The largest errors that they can make, side by side");
-  if (!banner.empty()) {
-    append_paragraph(html, "warning", banner + ".");
-  }
+                   "The largest errors that they can make, side by side",
+                   banner.empty() ? "" : html_of(banner) + ".");
   append_headline(html, comparison);
   append_conditions(html, comparison);
   for (const Note& note : notes_of(comparison)) {

@@ -88,6 +88,9 @@ std::vector<std::string> name_of_row(const Comparison& comparison, std::size_t i
   if (result.fit_warns) {
     lines.emplace_back("fit warns: not compared");
   }
+  if (result.has_open_damping) {
+    lines.emplace_back("damping not known");
+  }
   if (result.is_simulated) {
     lines.emplace_back("simulated: not compared");
   }

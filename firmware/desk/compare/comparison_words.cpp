@@ -19,8 +19,6 @@ namespace {
 using app::TextWriter;
 
 constexpr double kPercent = 100.0;
-constexpr const char* kFitMark = "fit";
-constexpr const char* kSimulatedMark = "sim";
 
 template <typename Write>
 std::string text_by(const Write& write) {
@@ -110,11 +108,38 @@ void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) 
                          "figure and its U mean little.",
                      true});
   }
+  const std::vector<const Result*> open =
+      those_that(comparison, [](const Result& result) { return result.has_open_damping; });
+  if (!open.empty()) {
+    notes.push_back(
+        {"Told apart from no other, because the points leave the damping open: " + list_of(open) +
+             ". The figure is that of the nearest damping that a device may have.",
+         true});
+  }
   const std::vector<const Result*> simulated = simulated_of(comparison);
   if (!simulated.empty()) {
     notes.push_back({"Not compared, because the bench was simulated: " + list_of(simulated) +
                          ". The figures say nothing about a real sensor.",
                      true});
+  }
+}
+
+// What the reports warn of beside that, each once with the devices that it is about.
+void add_notes_on_reports(const Comparison& comparison, std::vector<Note>& notes) {
+  std::vector<std::string> said;
+  for (const Result& result : comparison.results) {
+    for (const std::string& words : result.other_warnings) {
+      if (std::find(said.begin(), said.end(), words) != said.end()) {
+        continue;
+      }
+      said.push_back(words);
+      const std::vector<const Result*> warned = those_that(comparison, [&](const Result& other) {
+        return std::find(other.other_warnings.begin(), other.other_warnings.end(), words) !=
+               other.other_warnings.end();
+      });
+      notes.push_back(
+          {"Warned of by the report of " + list_of(warned) + ": " + printable(words) + ".", true});
+    }
   }
 }
 
@@ -186,6 +211,23 @@ std::string reason_not_compared(const Result& first, const Result& second) {
     }
   }
   return reason;
+}
+
+std::string open_damping_of(const Result& first, const Result& second) {
+  constexpr std::size_t kNameShown = 36;
+  std::string words;
+  for (const Result* result : {&first, &second}) {
+    if (!result->has_open_damping) {
+      continue;
+    }
+    const Figure& energy = result->figure(FigureKind::kEnergy);
+    words += (words.empty() ? "the points of " : "; those of ") +
+             short_name_of(*result, kNameShown) + " leave its damping open";
+    if (energy.has_range) {
+      words += ", E from " + interval_text(energy, FigureKind::kEnergy) + " V^2 s";
+    }
+  }
+  return words;
 }
 
 // Of a difference to the first of two figures.
@@ -273,10 +315,15 @@ std::string text_of(const Rank& rank) {
 }
 
 std::string mark_of(const Result& result) {
-  std::string mark = result.fit_warns ? kFitMark : "";
-  if (result.is_simulated) {
-    mark += mark.empty() ? kSimulatedMark : std::string(" ") + kSimulatedMark;
-  }
+  std::string mark;
+  const auto add = [&mark](bool is_due, const char* word) {
+    if (is_due) {
+      mark += mark.empty() ? word : std::string(" ") + word;
+    }
+  };
+  add(result.fit_warns, "fit");
+  add(result.has_open_damping, "beta");
+  add(result.is_simulated, "sim");
   return mark;
 }
 
@@ -343,8 +390,9 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
            "bound."}};
   if (has_marks(comparison)) {
     legend.push_back({"mark",
-                      "fit: chi-square of the fit warns; sim: the bench was simulated. "
-                      "Such a device is told apart from no other."});
+                      "fit: chi-square of the fit warns; beta: its points leave the damping open, "
+                      "and the interval is the range of E; sim: the bench was simulated. Such a "
+                      "device is told apart from no other."});
   }
   return legend;
 }
@@ -353,6 +401,7 @@ std::vector<Note> notes_of(const Comparison& comparison) {
   std::vector<Note> notes;
   add_note_on_refusals(comparison, notes);
   add_notes_on_marks(comparison, notes);
+  add_notes_on_reports(comparison, notes);
   add_notes_on_energy(comparison, notes);
   return notes;
 }
@@ -363,6 +412,9 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
   const Pair& pair = comparison.pairs[index];
   if (!pair.is_compared) {
     return {"not compared", reason_not_compared(first, second)};
+  }
+  if (pair.has_open_damping) {
+    return {"CANNOT BE TOLD APART", open_damping_of(first, second)};
   }
   if (!pair.has_uncertainty) {
     const bool has_one =

@@ -31,7 +31,8 @@ struct ComparisonTable {
 /// @returns "2", or "2-4" where the uncertainties do not say which.
 std::string text_of(const Rank& rank);
 
-/// @returns "fit", "sim", "fit sim" for a device that is not compared; else empty.
+/// @returns "fit", "beta", "sim", several of them for a device that is told apart from no other;
+/// else empty.
 std::string mark_of(const Result& result);
 
 /// @returns "SIMULATION: ..." for the top of text and page, and for the title of the picture; empty

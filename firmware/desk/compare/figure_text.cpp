@@ -70,7 +70,7 @@ std::string value_text(const Figure& figure, FigureKind kind) {
 }
 
 std::string interval_text(const Figure& figure, FigureKind kind) {
-  if (!figure.has_interval) {
+  if (!figure.has_interval && !figure.has_range) {
     return kNone;
   }
   return number_text(figure.low, figure.expanded, kind) + " to " +

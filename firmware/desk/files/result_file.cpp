@@ -20,6 +20,8 @@ namespace emax::desk {
 namespace {
 
 constexpr std::size_t kMaxFileSize = std::size_t{4} << 20;
+constexpr const char* kAboutFit = "fit";
+constexpr const char* kAboutDamping = "damping";
 constexpr const char* kExpectation = "expected a results.json of emax report";
 
 // An object of the file by its name there.
@@ -160,6 +162,19 @@ void take_energy(const JsonValue& root, Taker& taker, Result& result) {
   }
 }
 
+// What the points leave open instead of an uncertainty.
+void take_open_damping(const JsonValue& root, Result& result) {
+  const JsonValue& fit = root["fit"];
+  result.has_open_damping = fit["determined"].text() == "all but beta";
+  const std::vector<JsonValue>& ends = fit["E_range"].elements();
+  if (result.has_open_damping && ends.size() == 2 && ends[0].is_number() && ends[1].is_number()) {
+    Figure& energy = result.figure(FigureKind::kEnergy);
+    energy.has_range = true;
+    energy.low = ends[0].number();
+    energy.high = ends[1].number();
+  }
+}
+
 void take_figure(const Group& block, Taker& taker, Figure& figure) {
   figure.exists = true;
   figure.value = taker.number(block, "rms_percent");
@@ -208,8 +223,14 @@ void take_marks(const JsonValue& root, Result& result) {
   const JsonValue& warnings = root["warnings"];
   const bool has_warnings = warnings.kind() == JsonValue::Kind::kArray;
   result.fit_warns =
-      has_warnings ? has_warning(warnings, "fit") : chi_square_is_high(root["model"]);
+      has_warnings ? has_warning(warnings, kAboutFit) : chi_square_is_high(root["model"]);
   const bool is_said = root["simulated"].kind() == JsonValue::Kind::kBoolean;
+  for (const JsonValue& warning : warnings.elements()) {
+    const std::string& about = warning["about"].text();
+    if (about != kAboutFit && about != kAboutDamping && warning["text"].is_string()) {
+      result.other_warnings.push_back(warning["text"].text());
+    }
+  }
   result.is_simulated = is_said ? root["simulated"].is_true() : root["bench"]["truth"].is_object();
 }
 
@@ -245,6 +266,10 @@ Problem read_result(const std::string& path, Result& result) {
   if (Problem problem = parse_result(path, result.file, root)) {
     return problem;
   }
+  if (root["fit"]["determined"].text() == "S") {
+    return bad_input(result.file + ": holds no maximum energy, its points determine the " +
+                     "sensitivity alone; " + kExpectation + " of points nearer to the resonance");
+  }
   if (!root["energy"].is_object() || !root["energy"]["E"].is_number()) {
     return bad_input(result.file + ": holds no maximum energy, its measurement has failed; " +
                      kExpectation + " that ended well");
@@ -255,6 +280,7 @@ Problem read_result(const std::string& path, Result& result) {
   Taker taker;
   take_conditions(root, taker, result);
   take_energy(root, taker, result);
+  take_open_damping(root, result);
   take_band(root, taker, result);
   take_marks(root, result);
   if (!taker.missing().empty()) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "desk/cli/problem.hpp"
 
@@ -31,6 +32,8 @@ struct Figure {
   double u = 0.0;         ///< Standard uncertainty.
   double expanded = 0.0;  ///< U, with kCoverageFactor.
   bool has_interval = false;
+  /// Low and high are those of the dampings that the points leave open, and there is no u.
+  bool has_range = false;
   double low = 0.0;  ///< Of the coverage interval.
   double high = 0.0;
   bool has_bound = false;
@@ -58,14 +61,16 @@ struct Result {
 
   double sensitivity = 0.0;  ///< In V/(m/s^2).
   std::array<Figure, kFigureKinds> figures = {};
-  double delay_s = 0.0;             ///< That has been taken out of the matched figure.
-  std::string matched_refused;      ///< Why there is no matched figure; empty if not known.
-  bool has_ideal = false;           ///< The next is known.
-  double ideal_percent = 0.0;       ///< Root of E/T of an ideal sensor, in percent of S a.
-  double probability = 0.0;         ///< Of the intervals; 0 where there are none.
-  bool energy_u_is_of_box = false;  ///< u(E) follows from the trials over the box.
-  bool fit_warns = false;           ///< The points do not follow the fitted model.
-  bool is_simulated = false;        ///< The bench was.
+  double delay_s = 0.0;                     ///< That has been taken out of the matched figure.
+  std::string matched_refused;              ///< Why there is no matched figure; empty if not known.
+  bool has_ideal = false;                   ///< The next is known.
+  double ideal_percent = 0.0;               ///< Root of E/T of an ideal sensor, in percent of S a.
+  double probability = 0.0;                 ///< Of the intervals; 0 where there are none.
+  bool energy_u_is_of_box = false;          ///< u(E) follows from the trials over the box.
+  bool fit_warns = false;                   ///< The points do not follow the fitted model.
+  bool is_simulated = false;                ///< The bench was.
+  bool has_open_damping = false;            ///< The points do not determine beta.
+  std::vector<std::string> other_warnings;  ///< What else its report warns of, a line each.
 
   const Figure& figure(FigureKind kind) const noexcept {
     return figures[static_cast<std::size_t>(kind)];
@@ -82,6 +87,7 @@ struct Result {
 /// u(E) is that of the block "uncertainty". Where that is null, it is the scatter of the trials,
 /// times the root of 3 where they were drawn uniformly within estimate +- u (paper equation (21)):
 /// such a range has a standard deviation of u/sqrt(3), and E is smooth over so narrow a range.
+/// Where the points leave the damping open there is none, and the range of E in its place.
 /// A file without the block "band" has no figures of the band; one without "warnings" has its fit
 /// judged as the report does.
 ///

@@ -3,9 +3,26 @@
 
 #include <string_view>
 
-#include "desk/import/import_points.hpp"
+#include "desk/import/input_units.hpp"
 
 namespace emax::desk {
+
+/// An expanded uncertainty (k = 2) for tables without a column of it.
+struct GivenUncertainty {
+  double value = 0.0;  ///< In `unit`; 0 for none given.
+  Unit unit;
+};
+
+/// What the command line says about a table.
+struct ImportOptions {
+  GivenUncertainty amplitude_uncertainty;
+  GivenUncertainty phase_uncertainty;
+  Unit frequency_unit;  ///< For columns whose unit the header does not name.
+  Unit amplitude_unit;
+  Unit phase_unit;
+  double channel_delay_s = 0.0;  ///< Of the device's channel behind the reference's; removed.
+  bool is_inverted = false;      ///< 180 degrees are added to every phase.
+};
 
 /// Reads "1%,1deg": expanded uncertainties (k = 2) of amplitude and phase, in this order or the
 /// other, one or both; of the amplitude in percent, dB or a unit of its own, of the phase in deg,

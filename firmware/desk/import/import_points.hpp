@@ -8,35 +8,10 @@
 
 #include "emax/identify/frequency_response.hpp"
 
-#include "desk/import/input_units.hpp"
+#include "desk/import/import_error.hpp"
+#include "desk/import/import_options.hpp"
 
 namespace emax::desk {
-
-/// An expanded uncertainty (k = 2) for tables without a column of it.
-struct GivenUncertainty {
-  double value = 0.0;  ///< In `unit`; 0 for none given.
-  Unit unit;
-};
-
-/// What the command line says about a table.
-struct ImportOptions {
-  GivenUncertainty amplitude_uncertainty;
-  GivenUncertainty phase_uncertainty;
-  Unit frequency_unit;  ///< For columns whose unit the header does not name.
-  Unit amplitude_unit;
-  Unit phase_unit;
-  double channel_delay_s = 0.0;  ///< Of the device's channel behind the reference's; removed.
-  bool is_inverted = false;      ///< 180 degrees are added to every phase.
-};
-
-/// Where a table stops being one, or why none of it can be used.
-struct ImportError {
-  std::size_t line = 0;     ///< From 1; 0 where the table as a whole is meant.
-  std::string problem;      ///< Empty if all is well: "amplitude is not a number".
-  std::string expectation;  ///< "expected ...".
-
-  explicit operator bool() const noexcept { return !problem.empty(); }
-};
 
 /// A table that has been read.
 struct ImportedPoints {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "desk/files/utf8_text.hpp"
+
 namespace emax::desk {
 
 namespace {
@@ -15,26 +17,6 @@ std::uint32_t byte_at(std::string_view bytes, std::size_t index) noexcept {
 
 bool starts_with(std::string_view text, std::string_view start) noexcept {
   return text.substr(0, start.size()) == start;
-}
-
-void append_utf8(std::uint32_t code, std::string& text) {
-  const auto byte = [&text](std::uint32_t bits) { text += static_cast<char>(bits); };
-  if (code < 0x80) {
-    byte(code);
-    return;
-  }
-  if (code < 0x800) {
-    byte(0xC0 | (code >> 6));
-  } else {
-    if (code < 0x10000) {
-      byte(0xE0 | (code >> 12));
-    } else {
-      byte(0xF0 | (code >> 18));
-      byte(0x80 | ((code >> 12) & 0x3F));
-    }
-    byte(0x80 | ((code >> 6) & 0x3F));
-  }
-  byte(0x80 | (code & 0x3F));
 }
 
 // The number of bytes of a valid character of UTF-8 (RFC 3629), 0 for none.

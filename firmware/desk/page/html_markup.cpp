@@ -103,6 +103,11 @@ void append_words(std::string& html, std::string_view words) {
   }
 }
 
+std::string link_to(ReportSection section) {
+  const SectionName& name = name_of(section);
+  return "<a href=\"#" + std::string(name.id) + "\">" + name.title + "</a>";
+}
+
 void HtmlMarkup::begin(ReportSection section, const char* heading) noexcept {
   finish();
   section_ = section;
@@ -139,7 +144,6 @@ void HtmlMarkup::begin(ReportPart part, const char* name) noexcept {
       begin_paragraph("note");
       break;
     case ReportPart::kWarning:
-      note_warning();
       begin_paragraph("warning");
       break;
     case ReportPart::kTable:
@@ -220,17 +224,6 @@ void HtmlMarkup::begin_line(bool is_head) {
   html_ += "<tr>";
   block_ = is_head ? Block::kHead : Block::kBody;
   has_cell_ = false;
-}
-
-void HtmlMarkup::note_warning() {
-  ++warnings_;
-  if (last_warned_ == section_) {
-    return;
-  }
-  last_warned_ = section_;
-  const SectionName& name = name_of(section_);
-  warning_links_ += warning_links_.empty() ? "" : ", ";
-  warning_links_ += "<a href=\"#" + std::string(name.id) + "\">" + name.title + "</a>";
 }
 
 }  // namespace emax::desk

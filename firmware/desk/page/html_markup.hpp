@@ -42,6 +42,9 @@ std::string words_of(const Write& write) {
   return html;
 }
 
+/// @returns The title of a section as a link to it.
+std::string link_to(app::ReportSection section);
+
 /// What comes at the end of each section: its pictures.
 class SectionEnd {
  public:
@@ -66,10 +69,6 @@ class HtmlMarkup final : public app::ReportMarkup {
   /// Ends the last section.
   void finish();
 
-  /// @returns How many warnings the report has, and links to their sections.
-  std::size_t warnings() const noexcept { return warnings_; }
-  const std::string& warning_links() const noexcept { return warning_links_; }
-
  private:
   // What is open: nothing, a table of rows, a paragraph, a table of lines.
   enum class Block { kNone, kRows, kParagraph, kHead, kBody };
@@ -78,7 +77,6 @@ class HtmlMarkup final : public app::ReportMarkup {
   void begin_row(const char* name);
   void begin_paragraph(const char* kind);
   void begin_line(bool is_head);
-  void note_warning();
 
   std::string& html_;
   SectionEnd& section_end_;
@@ -86,9 +84,6 @@ class HtmlMarkup final : public app::ReportMarkup {
   Block block_ = Block::kNone;
   bool has_cell_ = false;
   bool has_section_ = false;
-  std::size_t warnings_ = 0;
-  std::string warning_links_;
-  app::ReportSection last_warned_ = app::ReportSection::kTitle;
 };
 
 }  // namespace emax::desk

@@ -6,6 +6,7 @@
 
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/files/rounding.hpp"
@@ -130,19 +131,29 @@ double expanded(const app::EnergyUncertainty& known) {
   return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
 }
 
-void append_in_band(std::string& html, const EvaluationResults& results) {
-  const auto percent = [&](const app::FigureResults& figure) {
-    return percentage(results.percent_of(figure.energy_v2s), expanded(figure.uncertainty)) +
-           " of S&nbsp;a";
-  };
-  const char* kind = " class=\"first\"";
+void append_in_band(std::string& html, const char* kind, const char* name,
+                    const EvaluationResults& results, const app::FigureResults& figure) {
+  append_figure(html, kind, name,
+                percentage(results.percent_of(figure.energy_v2s), expanded(figure.uncertainty)) +
+                    " of S&nbsp;a");
+}
+
+constexpr const char* kFirst = " class=\"first\"";
+constexpr const char* kWithDelay = "Worst in-band error, with its delay";
+
+// The figure that engineers rank sensors by; the next best where it is refused.
+void append_leading_figure(std::string& html, const EvaluationResults& results) {
   if (results.matched.exists()) {
-    append_figure(html, kind, "Worst in-band error, constant delay taken out (U, k = 2)",
-                  percent(results.matched));
-    kind = "";
+    append_in_band(html, kFirst, "Worst in-band error, constant delay taken out (U, k = 2)",
+                   results, results.matched);
+  } else if (results.band.exists()) {
+    append_in_band(html, kFirst, kWithDelay, results, results.band);
   }
-  if (results.band.exists()) {
-    append_figure(html, kind, "Worst in-band error, with its delay", percent(results.band));
+}
+
+void append_second_figure(std::string& html, const EvaluationResults& results) {
+  if (results.matched.exists() && results.band.exists()) {
+    append_in_band(html, "", kWithDelay, results, results.band);
   }
 }
 
@@ -225,14 +236,43 @@ void append_conditions(std::string& html, const EvaluationResults& results, bool
       "</p>\n";
 }
 
-void append_warnings(std::string& html, const HtmlMarkup& markup) {
-  if (markup.warnings() == 0) {
-    html += "<p class=\"note\">No warnings.</p>\n";
+std::vector<app::Warning> warnings_of(const EvaluationResults& results,
+                                      const app::ReportContext& context) {
+  std::vector<app::Warning> warnings;
+  for (const app::Warning warning : app::kWarnings) {
+    if (holds(warning, results, context)) {
+      warnings.push_back(warning);
+    }
+  }
+  return warnings;
+}
+
+// How many there are and which, beside the number that they are about.
+void append_warnings(std::string& html, const std::vector<app::Warning>& warnings) {
+  if (warnings.empty()) {
     return;
   }
-  html += "<p class=\"warning\">" + std::to_string(markup.warnings()) +
-          (markup.warnings() == 1 ? " warning" : " warnings") + ", in: " + markup.warning_links() +
-          "</p>\n";
+  std::string list = "<ul>";
+  for (const app::Warning warning : warnings) {
+    list += "<li>" + link_to(place_of(warning)) + ": " +
+            words_of([&](TextWriter& out) { out.text(words_of(warning)); }) + "</li>";
+  }
+  const std::string count = std::to_string(warnings.size());
+  append_figure(html, " class=\"warns\"", count + (warnings.size() == 1 ? " warning" : " warnings"),
+                list + "</ul>");
+}
+
+void append_headline(std::string& html, const EvaluationResults& results,
+                     const std::vector<app::Warning>& warnings) {
+  html += std::string("<dl class=\"headline") + (warnings.empty() ? "" : " doubtful") + "\">\n";
+  append_leading_figure(html, results);
+  append_warnings(html, warnings);
+  append_second_figure(html, results);
+  append_papers_figure(html, results);
+  append_uncertainty(html, results);
+  append_bound(html, results);
+  append_papers_maximum(html, results);
+  html += "</dl>\n";
 }
 
 // Page
@@ -244,9 +284,12 @@ std::string name_of(const app::Labels& labels) {
   return quoted(name.text().c_str());
 }
 
-std::string opening(const app::Labels& labels) {
-  return page_opening(name_of(labels), " - emax report",
-                      "The largest error that this accelerometer can make");
+std::string opening(const app::ReportContext& context) {
+  const bool is_marked = is_simulated(context);
+  return page_opening(name_of(context.labels),
+                      is_marked ? " (simulation) - emax report" : " - emax report",
+                      "The largest error that this accelerometer can make",
+                      is_marked ? app::kSimulationBanner : "");
 }
 
 std::string closing() {
@@ -267,15 +310,13 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
   write_report(results, context, report, &markup);
   markup.finish();
 
-  std::string html = opening(context.labels) + "<dl class=\"headline\">\n";
-  append_in_band(html, results);
-  append_papers_figure(html, results);
-  append_uncertainty(html, results);
-  append_bound(html, results);
-  append_papers_maximum(html, results);
-  html += "</dl>\n";
+  const std::vector<app::Warning> warnings = warnings_of(results, context);
+  std::string html = opening(context);
+  append_headline(html, results, warnings);
   append_conditions(html, results, context.in_g);
-  append_warnings(html, markup);
+  if (warnings.empty()) {
+    html += "<p class=\"note\">No warnings.</p>\n";
+  }
   if (pictures.empty()) {
     html += std::string("<p class=\"note\">No pictures: gnuplot was missing when this page was ") +
             "made, or has failed. Running gnuplot " + kPictureScript +
@@ -286,7 +327,7 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
 
 void write_fault_page(const app::ReportContext& context, const EvaluationResults* refused,
                       TextWriter& out) {
-  std::string html = opening(context.labels);
+  std::string html = opening(context);
   HtmlWords words(html);
   TextWriter report(words);
   const std::vector<PagePicture> none;

@@ -42,6 +42,15 @@ sup { line-height: 0; }
 .headline .first dd { font-size: 2rem; font-weight: bold; line-height: 1.2; }
 .warning, .note { padding: .6rem .8rem; border-left: .4rem solid var(--line); background: var(--note-paper); }
 .warning { border-color: var(--warn); background: var(--warn-paper); color: var(--warn); font-weight: bold; }
+/* A number that a warning is about must not look like one to rely on. */
+.doubtful { border-color: var(--warn); border-style: dashed; }
+.doubtful .first dd { color: var(--warn); font-weight: normal; }
+.headline .warns { grid-column: 1 / -1; color: var(--warn); }
+.headline .warns dt { color: var(--warn); font-weight: bold; }
+.headline .warns dd { font-size: 1rem; }
+.headline .warns ul { margin: 0; padding-left: 1.2rem; }
+.banner { position: sticky; top: 0; z-index: 1; margin: 0 0 1rem; padding: .5rem .8rem; background: var(--warn);
+  color: var(--paper); font-weight: bold; text-align: center; }
 table { border-collapse: collapse; }
 .rows { width: 100%; }
 .rows th { width: 14rem; padding: .15rem 1rem .15rem 0; font-weight: normal; color: var(--soft); }
@@ -71,6 +80,10 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
     --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
   html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; }
+  /* The header of a table stands on every page. */
+  .marked { display: table; width: 100%; }
+  .marked .banner { display: table-header-group; break-inside: avoid; position: static; color: #000000; background: none; line-height: 2; }
+  .marked main, .marked footer { display: table-row-group; }
   figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figure svg { max-height: 85mm; }
   #fit svg { max-height: 120mm; }
@@ -85,14 +98,17 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
 }
 </style>
 </head>
-<body>
 )";
 
 }  // namespace
 
 std::string page_opening(const std::string& title, const std::string& kind,
-                         const std::string& about) {
-  return std::string(kHead) + "<title>" + title + kind + "</title>\n" + kStyle +
+                         const std::string& about, const std::string& banner) {
+  const std::string mark =
+      banner.empty()
+          ? "<body>\n"
+          : "<body class=\"marked\">\n<div class=\"banner\" role=\"note\">" + banner + "</div>\n";
+  return std::string(kHead) + "<title>" + title + kind + "</title>\n" + kStyle + mark +
          "<main>\n<header>\n<h1>" + title + "</h1>\n<p class=\"about\">" + about +
          "</p>\n</header>\n";
 }

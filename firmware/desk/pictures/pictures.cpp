@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/base/units.hpp"
 #include "emax/model/accelerometer.hpp"
@@ -552,10 +553,11 @@ std::vector<Picture> pictures_of(const EvaluationResults& results,
                                  const app::ReportContext& context) {
   std::vector<Picture> pictures;
   const std::string name = name_of_device(context.labels);
+  const std::string mark = is_simulated(context) ? "SIMULATION: " : "";
   for (const Kind& kind : kKinds) {
     if (kind.exists(results)) {
       pictures.push_back(
-          {kind.file, kind.section, name + ": " + kind.title, kind.caption, context.in_g});
+          {kind.file, kind.section, mark + name + ": " + kind.title, kind.caption, context.in_g});
     }
   }
   return pictures;

@@ -146,8 +146,8 @@ void Evaluation::go_on() noexcept {
     begin_energy();
   } else if (goal != Goal::kModel && !results_.is_bound_done) {
     begin_bound();
-  } else if (needs_trials(goal, results_.settings) && results_.is_damping_open() &&
-             !results_.is_cut_done) {
+  } else if ((needs_trials(goal, results_.settings) || wants_uncertainty(goal)) &&
+             results_.is_damping_open() && !results_.is_cut_done) {
     begin_cut_range();
   } else if (needs_trials(goal, results_.settings) && !results_.has_monte_carlo &&
              results_.has_uncertainty()) {

@@ -149,7 +149,9 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
     case Goal::kBand:
       return holds_energy && has_figures();
     case Goal::kUncertainty:
-      return holds_energy && uncertainty.is_done && is_same_trials(settings, wanted);
+      return holds_energy &&
+             (is_damping_open() ? has_cut_range
+                                : uncertainty.is_done && is_same_trials(settings, wanted));
     case Goal::kReport:
       return holds_energy && has_figures() &&
              ((holds_trials && has_uncertainties()) || has_rest_of_trials) &&

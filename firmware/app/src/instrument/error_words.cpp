@@ -62,6 +62,8 @@ constexpr FailureWords kFailures[] = {
 };
 constexpr FailureWords kTooWide = {Status::kInvalidArgument, ErrorCode::kSettingsConflict,
                                    "uncertainties too large for the trials"};
+constexpr FailureWords kOnlySensitivity = {Status::kNotIdentifiable, ErrorCode::kExecutionError,
+                                           "points give S alone: more, nearer to f0"};
 constexpr FailureWords kTrendTooLong = {
     Status::kTooManyCells, ErrorCode::kSettingsConflict,
     "a trend time needs over " EMAX_TEXT_OF(EMAX_MAX_CELLS) " cells"};
@@ -102,6 +104,8 @@ constexpr ObstacleWords kObstacles[] = {
      "T/step > " EMAX_TEXT_OF(EMAX_MAX_CELLS) ": shorten T or longer STEP"},
     {Obstacle::kNoUncertainty, ErrorCode::kDataCorruptOrStale,
      "no uncertainties: CALC:MOD with uS,.."},
+    {Obstacle::kOpenDamping, ErrorCode::kDataCorruptOrStale,
+     "beta left open: nearer f0, or CALC:MOD"},
     {Obstacle::kNoTimes, ErrorCode::kDataCorruptOrStale, "no times: CALC:TREN? T1,T2,..."},
 };
 
@@ -115,7 +119,9 @@ ErrorWords words_of(const Refusal& refusal, const Sequencer& sequencer) noexcept
     return {ErrorCode::kHardwareError, fault_words(refusal.status).words};
   }
   if (refusal.obstacle == Obstacle::kEvaluation) {
-    const FailureWords failure = failure_words(sequencer.evaluation().failure);
+    const EvaluationResults& results = sequencer.evaluation();
+    const FailureWords failure =
+        results.is_sensitivity_alone() ? kOnlySensitivity : failure_words(results.failure);
     return {failure.code, failure.words};
   }
   for (const ObstacleWords& words : kObstacles) {

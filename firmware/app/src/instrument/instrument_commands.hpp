@@ -112,6 +112,8 @@ struct InstrumentCommands {
   static const Identification* kept(const Instrument& i) noexcept;
   static void identify(Instrument& i, Call& call) noexcept;
   static void answer_device(const Device& device, scpi::Response& out) noexcept;
+  static Device fitted_device(const EvaluationResults& results) noexcept;
+  static void answer_cut_range(const EvaluationResults& results, scpi::Response& out) noexcept;
   static void covariance(Instrument& i, Call& call) noexcept;
   static void model(Instrument& i, Call& call) noexcept;
   /// @returns What is wrong with the device; null if it can be one.

@@ -243,12 +243,27 @@ void InstrumentCommands::identify(Instrument& i, Call& call) noexcept {
     call.answer().number(identification->chi2).integer(identification->dof);
     return;
   }
-  if (!i.provide_fit(call)) {
+  if (!i.provide_sensitivity(call)) {
     return;
   }
   const WlspFit& fit = results_of(i).fit.result();
-  answer_device(results_of(i).device, call.answer());
+  answer_device(fitted_device(results_of(i)), call.answer());
   call.answer().number(fit.chi2).integer(fit.dof);
+}
+
+/// As fitted: a damping that the points leave open may be negative, and what they do not determine
+/// at all is not a number.
+Device InstrumentCommands::fitted_device(const EvaluationResults& results) noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const WlspFit& fit = results.fit.result();
+  const FitJudgement& judgement = results.judgement;
+  if (judgement.determined == Determined::kSensitivity) {
+    return {{judgement.device.sensitivity, kNone, kNone}, {judgement.u_sensitivity, kNone, kNone}};
+  }
+  if (results.is_damping_open() && !fit.is_damping_held) {
+    return {fit.model, {fit.u_sensitivity, fit.u_natural_frequency_hz, fit.u_damping}};
+  }
+  return results.device;
 }
 
 void InstrumentCommands::answer_device(const Device& device, scpi::Response& out) noexcept {
@@ -354,11 +369,25 @@ void InstrumentCommands::band(Instrument& i, Call& call) noexcept {
   call.answer_items(figure.times_s().size());
 }
 
+/// The range of E in the place of both intervals; there is no u.
+void InstrumentCommands::answer_cut_range(const EvaluationResults& results,
+                                          scpi::Response& out) noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  out.number(kNone).number(kNone);
+  out.number(results.cut_low_v2s).number(results.cut_high_v2s);
+  out.number(results.cut_low_v2s).number(results.cut_high_v2s);
+  out.integer(0);
+}
+
 void InstrumentCommands::uncertainty(Instrument& i, Call& call) noexcept {
   if (!i.provide(call, Goal::kUncertainty)) {
     return;
   }
   const EnergyUncertainty& known = results_of(i).uncertainty;
+  if (results_of(i).is_damping_open()) {
+    answer_cut_range(results_of(i), call.answer());
+    return;
+  }
   if (!known.exists()) {
     call.fail(ErrorCode::kSettingsConflict, "uncertainties too large for the trials");
     return;

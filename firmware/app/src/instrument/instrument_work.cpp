@@ -197,6 +197,20 @@ bool Instrument::provide_fit(Call& call) noexcept {
   return provide(call, Goal::kModel);
 }
 
+bool Instrument::provide_sensitivity(Call& call) noexcept {
+  const EvaluationResults& results = sequencer_.evaluation();
+  if (!is_working() && sequencer_.points().size() != 0 && can_begin(call)) {
+    if (sequencer_.take_points()) {
+      change_device();
+    }
+    if (!sequencer_.holds(Goal::kModel, settings_) && begin_evaluation(Goal::kModel) &&
+        results.is_sensitivity_alone()) {
+      return true;
+    }
+  }
+  return provide_fit(call);
+}
+
 bool Instrument::provide_fixed_point(Call& call) noexcept {
   if (call.stage() == Call::Stage::kStart) {
     sequencer_.forget_fixed_point();  // One that nobody fetched.

@@ -186,6 +186,8 @@ void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
       out.text(" % of the amplitude over").line();
     }
   }
+  out.part(ReportPart::kWarning)
+      .text("  WARNING: look at the flagged points before the results are used.\n");
 }
 
 void write_common(const SweepResults& sweep, ReportWriter& out) noexcept {
@@ -373,7 +375,7 @@ void write_measurement_section(const Measurement& measurement, ReportWriter& out
 void write_measurement(const ReportContext& context, const EvaluationResults* refused,
                        TextWriter& out, ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
-  write_title(context.labels, writer);
+  write_title(context, writer);
   writer.part(ReportPart::kWarning)
       .text("NOT COMPLETE: a fault has ended the work, so there is no maximum energy.\n");
   write_fault(context.measurement->sweep, refused, writer);

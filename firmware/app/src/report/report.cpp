@@ -3,11 +3,11 @@
 
 #include <limits>
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 #include "report_figures.hpp"
 #include "report_parts.hpp"
-#include "report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -20,6 +20,7 @@ constexpr double kLeastCorrelationShown = 0.0005;  // Less would be -0.000.
 // Below it the energies leave a line by 4 % of their range or more.
 constexpr double kLeastTrendCorrelation = 0.999;
 constexpr double kQuantile99 = 2.326347874040841;  // Of N(0, 1) at 99 %.
+constexpr std::size_t kDamping = 2;                // Of the parameters.
 constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
@@ -170,13 +171,14 @@ struct Estimate {
   double value;
   double u;
   double u_by_draws;
+  bool is_held;
 };
 
 void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
   const int decimals = decimals_for(estimate.u);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(11).text(estimate.name);
-  if (estimate.u == 0.0) {
+  if (estimate.is_held) {
     out.cell(15).general(estimate.value, 4);
     for (int i = 0; i < 3; ++i) {
       out.cell(15).text("held");
@@ -202,15 +204,18 @@ void write_estimates(const EvaluationResults& results, ReportWriter& out) noexce
   out.cell(15).text("U (k = 2)");
   out.cell(0).text("  unit").line();
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
-    const Estimate estimate = {kParameterNames[i], kParameterUnits[i],
+    const Estimate estimate = {kParameterNames[i],
+                               kParameterUnits[i],
                                estimate_of(results.fit.result().model, i),
-                               sqrt(results.covariance(i, i)), sqrt(draws.covariance[i][i])};
+                               sqrt(results.covariance(i, i)),
+                               sqrt(draws.covariance[i][i]),
+                               i == kDamping && results.fit.result().is_damping_held};
     write_estimate(estimate, out);
     if (i == 0 && out.in_g()) {
       constexpr double kG = kStandardGravity_mps2;
-      write_estimate(
-          {estimate.name, "V/g", kG * estimate.value, kG * estimate.u, kG * estimate.u_by_draws},
-          out);
+      write_estimate({estimate.name, "V/g", kG * estimate.value, kG * estimate.u,
+                      kG * estimate.u_by_draws, false},
+                     out);
     }
   }
   out.part(ReportPart::kText);
@@ -261,41 +266,6 @@ void write_correlations(const EvaluationResults& results, ReportWriter& out) noe
     }
   }
   out.line();
-}
-
-void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
-  const double reduced = fit.chi2 / fit.dof;
-  const double limit = reduced_chi_square_limit(fit.dof);
-  if (reduced > limit) {
-    out.line();
-    out.part(ReportPart::kWarning)
-        .text("  WARNING: chi2/dof = ")
-        .general(reduced, 4)
-        .text(" is above ");
-    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
-    out.text(
-        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
-        "  these frequencies, or the stated uncertainties are too small. The standard\n"
-        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
-        "  then too small by about the Birge ratio of ");
-    out.general(fit.birge_ratio, 3).text(".\n");
-    out.text(
-        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
-        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
-        "  and that the table's uncertainties are expanded ones (k = 2).\n");
-    if (cause != nullptr) {
-      write_cause(cause, out);
-    }
-    return;
-  }
-  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
-  if (reduced < low) {
-    out.line();
-    out.part(ReportPart::kNote).text("  Note: chi2/dof is below ").general(low, 3);
-    out.text(
-        ", which one fit in a hundred undercuts: the points scatter\n"
-        "  less than the stated uncertainties say. These may be too large.\n");
-  }
 }
 
 double size_of(Complex residual) noexcept {
@@ -392,9 +362,9 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   out.label("5 % settling time");
   if (!settling.found) {
     out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
-    return;
+  } else {
+    out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
   }
-  out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
   if (duration_s < settling.time_s) {
     const bool is_much = duration_s < kMuchShorter * settling.time_s;
     out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
@@ -669,6 +639,41 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
 
 }  // namespace
 
+void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
+  const double reduced = fit.chi2 / fit.dof;
+  const double limit = reduced_chi_square_limit(fit.dof);
+  if (reduced > limit) {
+    out.line();
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: chi2/dof = ")
+        .general(reduced, 4)
+        .text(" is above ");
+    out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
+    out.text(
+        "  and the stated uncertainties hold. So the device is not a second-order system over\n"
+        "  these frequencies, or the stated uncertainties are too small. The standard\n"
+        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
+        "  then too small by about the Birge ratio of ");
+    out.general(fit.birge_ratio, 3).text(".\n");
+    out.text(
+        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
+        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
+        "  and that the table's uncertainties are expanded ones (k = 2).\n");
+    if (cause != nullptr) {
+      write_cause(cause, out);
+    }
+    return;
+  }
+  const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
+  if (reduced < low) {
+    out.line();
+    out.part(ReportPart::kNote).text("  Note: chi2/dof is below ").general(low, 3);
+    out.text(
+        ", which one fit in a hundred undercuts: the points scatter\n"
+        "  less than the stated uncertainties say. These may be too large.\n");
+  }
+}
+
 void write_points_source(const EvaluationResults& results, const ReportContext& context,
                          ReportWriter& out) noexcept {
   out.label("Device");
@@ -682,7 +687,7 @@ double reduced_chi_square_limit(std::size_t dof) noexcept {
 void write_report(const EvaluationResults& results, const ReportContext& context, TextWriter& out,
                   ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
-  write_title(context.labels, writer);
+  write_title(context, writer);
   write_figures(results, writer);
   write_input(results, context, writer);
   if (context.measurement != nullptr) {

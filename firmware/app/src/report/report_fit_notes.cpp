@@ -1,12 +1,11 @@
 // What a report says where points leave a parameter open.
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 #include "report_parts.hpp"
 
 namespace emax::app {
 namespace {
-
-constexpr double kDisagreement = 0.2;  // Of u by formula and u by draws.
 
 const char* const kNames[] = {"S", "f0", "beta"};
 
@@ -44,24 +43,17 @@ void write_magnitudes_only(const WlspFit& fit, std::size_t points, ReportWriter&
 }
 
 void write_disagreement(const EvaluationResults& results, ReportWriter& out) noexcept {
-  if (!results.has_fit_draws) {
+  const std::size_t i = disagreeing_parameter(results);
+  if (i == kWlspParameters) {
     return;
   }
-  const WlspDrawsResult& draws = results.fit_draws;
-  for (std::size_t i = 0; i < kWlspParameters; ++i) {
-    const double u = sqrt(results.covariance(i, i));
-    const double drawn = sqrt(draws.covariance[i][i]);
-    if (!(abs(drawn - u) > kDisagreement * u) || u == 0.0) {
-      continue;
-    }
-    out.line();
-    out.part(ReportPart::kWarning).text("  WARNING: u(").text(kNames[i]).text(") by formula, ");
-    out.general(u, 3).text(", and by draws, ").general(drawn, 3);
-    out.text(
-        ", differ by more than 20 %: the stated\n"
-        "  uncertainties are too large for a linear law of propagation. Check their units.\n");
-    return;
-  }
+  out.line();
+  out.part(ReportPart::kWarning).text("  WARNING: u(").text(kNames[i]).text(") by formula, ");
+  out.general(sqrt(results.covariance(i, i)), 3).text(", and by draws, ");
+  out.general(sqrt(results.fit_draws.covariance[i][i]), 3);
+  out.text(
+      ", differ by more than 20 %: the stated\n"
+      "  uncertainties are too large for a linear law of propagation. Check their units.\n");
 }
 
 void write_low_frequency(const EvaluationResults& results, ReportWriter& out) noexcept {
@@ -140,7 +132,7 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
   const WlspFit& fit = results.fit.result();
   const int decimals = decimals_for(judgement.u_sensitivity);
   ReportWriter writer(out, context.in_g, markup);
-  write_title(context.labels, writer);
+  write_title(context, writer);
   writer.heading(ReportSection::kInput, "WHAT WAS PUT IN");
   write_points_source(results, context, writer);
   writer.heading(ReportSection::kFit, "FIT");
@@ -152,6 +144,7 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
   if (fit.dof > 0 && fit.chi2 > 0.0) {
     writer.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
     writer.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
+    write_fit_warning(fit, context.cause, writer);
   }
   writer.line();
   writer.part(ReportPart::kWarning);

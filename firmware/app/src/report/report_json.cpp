@@ -2,13 +2,13 @@
 #include "emax/app/base/json_writer.hpp"
 #include "emax/app/base/version.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/app/settings/setting_field.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/status.hpp"
 #include "emax/base/units.hpp"
 
 #include "report_parts.hpp"
-#include "report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -348,22 +348,22 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.close();
 }
 
+void write_warning(const char* about, const char* words, JsonWriter& json) noexcept {
+  json.open(nullptr);
+  json.words("about", about);
+  json.words("text", words);
+  json.close();
+}
+
 void write_warnings(const EvaluationResults& results, const ReportContext& context,
                     JsonWriter& json) noexcept {
   json.open("warnings", '[');
   for (const Warning warning : kWarnings) {
     if (holds(warning, results, context)) {
-      json.open(nullptr);
-      json.words("about", about(warning));
-      json.words("text", words_of(warning));
-      json.close();
+      write_warning(about(warning), words_of(warning), json);
     }
   }
   json.close(']');
-}
-
-bool is_simulated(const ReportContext& context) noexcept {
-  return context.measurement != nullptr && context.measurement->simulated != nullptr;
 }
 
 void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexcept {
@@ -698,10 +698,12 @@ void write_sensitivity_json(const EvaluationResults& results, const ReportContex
   json.words("source", source_of(results, context.measurement));
   json.close();
   write_fit(results, context, json);
-  for (const char* part :
-       {"bench", "filter", "impulse_response", "energy", "monte_carlo", "trend"}) {
+  for (const char* part : {"bench", "filter", "impulse_response", "energy", "band", "ideal",
+                           "uncertainty", "monte_carlo", "trend"}) {
     json.null(part);
   }
+  write_warnings(results, context, json);
+  json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
 }
@@ -718,6 +720,7 @@ void write_measurement_json(const ReportContext& context, const EvaluationResult
     json.null(part);
   }
   json.open("warnings", '[');
+  write_warning("measurement", "a fault has ended the work, so there is no maximum energy", json);
   json.close(']');
   json.boolean("simulated", is_simulated(context));
   json.close();

@@ -68,7 +68,11 @@ TextWriter& ReportWriter::and_v_per_g(double sensitivity, int digits) noexcept {
   return *this;
 }
 
-void write_title(const Labels& labels, ReportWriter& out) noexcept {
+void write_title(const ReportContext& context, ReportWriter& out) noexcept {
+  const Labels& labels = context.labels;
+  if (out.is_plain() && is_simulated(context)) {
+    out.text(kSimulationBanner).text("\n\n");
+  }
   out.heading(ReportSection::kTitle, nullptr);
   out.text("emax report, version ").text(kVersion).line();
   out.text(

@@ -35,6 +35,8 @@ class ReportWriter final : public TextWriter {
   TextWriter& quote(const char* words) noexcept;
 
   bool in_g() const noexcept { return in_g_; }
+  /// Text of its own, without marks.
+  bool is_plain() const noexcept { return markup_ == nullptr; }
   /// " (0.1057446 g)" behind an acceleration where that is asked for, else nothing.
   TextWriter& and_g(double acceleration_mps2, int digits) noexcept;
   /// " (10.16949 V/g)" behind a sensitivity.
@@ -55,8 +57,9 @@ inline int decimals_for(double u) noexcept {
   return decimals;
 }
 
-/// Title of the report, where its equations are from, and the labels.
-void write_title(const Labels& labels, ReportWriter& out) noexcept;
+/// Title of the report, where its equations are from, and the labels. Above it, in plain text,
+/// kSimulationBanner where it is due; a page has that as its own banner.
+void write_title(const ReportContext& context, ReportWriter& out) noexcept;
 
 /// The row on where the points are from, and what was understood of them.
 void write_points_source(const EvaluationResults& results, const ReportContext& context,
@@ -64,6 +67,11 @@ void write_points_source(const EvaluationResults& results, const ReportContext& 
 
 /// Where the points leave a parameter open, or disagree with what can be.
 void write_fit_notes(const EvaluationResults& results, ReportWriter& out) noexcept;
+
+/// Where chi-square says that the points do not follow the model, or follow it too well.
+///
+/// @param[in] cause Null if nobody knows.
+void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept;
 
 /// Why the points do not fit, in lines.
 void write_cause(const char* cause, ReportWriter& out) noexcept;

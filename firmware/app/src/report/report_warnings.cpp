@@ -1,8 +1,9 @@
 // When a warning is due, and its line.
-#include "report_warnings.hpp"
+#include "emax/app/report/report_warnings.hpp"
 
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/base/elementary.hpp"
 
 namespace emax::app {
 namespace {
@@ -25,6 +26,15 @@ bool is_short(const EvaluationResults& results) noexcept {
   return results.settings.duration_s < kMuchShorter * results.settling_time.time_s;
 }
 
+bool is_low(const EvaluationResults& results) noexcept {
+  const double f0_hz = results.device.estimate.natural_frequency_hz;
+  return results.source == Source::kPoints && f0_hz > 0.0 && f0_hz < results.settings.cutoff_hz;
+}
+
+bool are_redrawn(std::uint32_t redraws, std::uint32_t trials) noexcept {
+  return redraws > trials / kOnePercent;
+}
+
 bool has_flags(const ReportContext& context) noexcept {
   if (context.measurement == nullptr) {
     return false;
@@ -44,6 +54,14 @@ bool holds(Warning warning, const EvaluationResults& results,
   switch (warning) {
     case Warning::kFit:
       return fit_warns(results);
+    case Warning::kOpenDamping:
+      return results.is_damping_open();
+    case Warning::kOnlyS:
+      return results.judgement.determined == Determined::kSensitivity;
+    case Warning::kDisagreement:
+      return disagreeing_parameter(results) < kWlspParameters;
+    case Warning::kLowFrequency:
+      return is_low(results);
     case Warning::kShortTime:
       return is_short(results);
     case Warning::kFewTrials:
@@ -54,8 +72,11 @@ bool holds(Warning warning, const EvaluationResults& results,
       return results.has_monte_carlo && results.guard.disagreements > 0;
     case Warning::kCrowded:
       return results.has_monte_carlo && results.trials.branches.is_crowded;
+    case Warning::kTrialsRedrawn:
+      return results.has_monte_carlo &&
+             are_redrawn(results.trials.redraws, results.trials.result.trials);
     case Warning::kRedrawn:
-      return known.exists() && known.redraws > known.trials / kOnePercent;
+      return known.exists() && are_redrawn(known.redraws, known.trials);
     case Warning::kNoUncertainty:
       return known.is_done && !known.exists();
     case Warning::kMeasurement:
@@ -68,12 +89,19 @@ const char* about(Warning warning) noexcept {
   switch (warning) {
     case Warning::kFit:
       return "fit";
+    case Warning::kOpenDamping:
+      return "damping";
+    case Warning::kDisagreement:
+      return "fit_draws";
+    case Warning::kOnlyS:
+    case Warning::kLowFrequency:
     case Warning::kShortTime:
       return "energy";
     case Warning::kFewTrials:
     case Warning::kNotStable:
     case Warning::kGuard:
     case Warning::kCrowded:
+    case Warning::kTrialsRedrawn:
       return "monte_carlo";
     case Warning::kRedrawn:
     case Warning::kNoUncertainty:
@@ -84,11 +112,58 @@ const char* about(Warning warning) noexcept {
   return "measurement";
 }
 
+ReportSection place_of(Warning warning) noexcept {
+  switch (warning) {
+    case Warning::kFit:
+    case Warning::kOpenDamping:
+    case Warning::kOnlyS:
+    case Warning::kDisagreement:
+    case Warning::kLowFrequency:
+      return ReportSection::kFit;
+    case Warning::kShortTime:
+      return ReportSection::kErrorSystem;
+    case Warning::kFewTrials:
+    case Warning::kNotStable:
+    case Warning::kGuard:
+    case Warning::kCrowded:
+    case Warning::kTrialsRedrawn:
+      return ReportSection::kMonteCarlo;
+    case Warning::kRedrawn:
+    case Warning::kNoUncertainty:
+      return ReportSection::kUncertainty;
+    case Warning::kMeasurement:
+      break;
+  }
+  return ReportSection::kMeasurement;
+}
+
+std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
+  for (std::size_t i = 0; results.has_fit_draws && i < kWlspParameters; ++i) {
+    const double u = sqrt(results.covariance(i, i));
+    const double drawn = sqrt(results.fit_draws.covariance[i][i]);
+    if (u > 0.0 && abs(drawn - u) > kDisagreement * u) {
+      return i;
+    }
+  }
+  return kWlspParameters;
+}
+
 const char* words_of(Warning warning) noexcept {
   switch (warning) {
     case Warning::kFit:
       return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
              "order over these frequencies, or the stated uncertainties are too small";
+    case Warning::kOpenDamping:
+      return "the points do not determine beta: E is that of the nearest beta that a device may "
+             "have, and its range is wide";
+    case Warning::kOnlyS:
+      return "the points determine the sensitivity alone, so there is no maximum energy; measure "
+             "to higher frequencies";
+    case Warning::kDisagreement:
+      return "u by formula and u by draws differ by more than 20 %: the stated uncertainties are "
+             "too large for a linear law; check their units";
+    case Warning::kLowFrequency:
+      return "f0 is below the filter's cutoff; check that the frequencies are in Hz";
     case Warning::kShortTime:
       return "T is much shorter than the settling time; give at least the settling time";
     case Warning::kFewTrials:
@@ -99,6 +174,7 @@ const char* words_of(Warning warning) noexcept {
       return "a full search found more energy than its trial: maximum and intervals are too low";
     case Warning::kCrowded:
       return "more signals than the trials have room for may be the worst within the ranges";
+    case Warning::kTrialsRedrawn:
     case Warning::kRedrawn:
       return "more than 1 % of the draws were no device and were made again: E is not normal there";
     case Warning::kNoUncertainty:

@@ -197,7 +197,11 @@ void Sequencer::end_evaluation() noexcept {
     failure_ = {Obstacle::kEvaluation, evaluation_.status()};
   } else if ((goal_ == Goal::kMonteCarlo && !evaluation_.has_monte_carlo) ||
              (goal_ == Goal::kUncertainty && !evaluation_.uncertainty.is_done)) {
-    failure_ = {Obstacle::kNoUncertainty};
+    const bool has_range = goal_ == Goal::kUncertainty && evaluation_.has_cut_range;
+    const bool is_open = evaluation_.is_damping_open();
+    failure_ = {has_range ? Obstacle::kNone
+                : is_open ? Obstacle::kOpenDamping
+                          : Obstacle::kNoUncertainty};
   } else if (goal_ == Goal::kTrend && !evaluation_.has_trend) {
     failure_ = {Obstacle::kNoTimes};
   }

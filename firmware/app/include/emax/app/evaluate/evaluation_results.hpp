@@ -191,6 +191,11 @@ struct EvaluationResults {
   bool is_damping_open() const noexcept {
     return source == Source::kPoints && judgement.determined == Determined::kAllButDamping;
   }
+  /// @returns Whether points were refused because they determine the sensitivity alone.
+  bool is_sensitivity_alone() const noexcept {
+    return source == Source::kPoints && stage == Stage::kFailed &&
+           judgement.determined == Determined::kSensitivity;
+  }
   /// @returns Whether there is an uncertainty for trials, which need a range for each parameter.
   bool has_uncertainty() const noexcept;
   /// @returns Whether both in-band errors and the ideal sensor were looked for.

@@ -158,6 +158,8 @@ class Instrument {
   bool provide(scpi::Call& call, Goal goal) noexcept;
   /// The fit: the device is then the one that the points give.
   bool provide_fit(scpi::Call& call) noexcept;
+  /// The same, also true where the points give S alone.
+  bool provide_sensitivity(scpi::Call& call) noexcept;
   bool provide_fixed_point(scpi::Call& call) noexcept;
 
   /// *OPC: sets event bit 0 once nothing runs.

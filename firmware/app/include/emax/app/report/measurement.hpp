@@ -26,6 +26,14 @@ struct Measurement {
   const SimulatedBench* simulated = nullptr;  ///< Null for a real bench.
 };
 
+/// What stands above all that comes from a simulated bench.
+inline constexpr char kSimulationBanner[] = "SIMULATION: no real sensor was measured.";
+
+/// @returns Whether the bench of a report was a simulated one.
+constexpr bool is_simulated(const ReportContext& context) noexcept {
+  return context.measurement != nullptr && context.measurement->simulated != nullptr;
+}
+
 /// @returns "swapped channels", "lost block" and so on: what a sweep has failed with, in two or
 /// three words. Never null.
 const char* name_of_fault(Status status) noexcept;

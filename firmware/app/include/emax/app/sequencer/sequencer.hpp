@@ -49,6 +49,7 @@ enum class Obstacle : std::uint8_t {
   kEvaluation,     ///< `failure` of the evaluation's results says why.
   kGrid,           ///< The fixed point needs more cells than there are, or less than one.
   kNoUncertainty,  ///< No trials without it.
+  kOpenDamping,    ///< No trials where the points leave the damping open, and no range of E either.
   kNoTimes,        ///< No trend without them.
 };
 

@@ -1,0 +1,61 @@
+// What a reader or a program must not miss about the results, one line each.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/report/report_context.hpp"
+
+namespace emax::app {
+
+enum class Warning : std::uint8_t {
+  kFit,            ///< chi2 over dof is above `reduced_chi_square_limit()`.
+  kOpenDamping,    ///< The points leave the damping open.
+  kOnlyS,          ///< The points determine the sensitivity alone.
+  kDisagreement,   ///< u by formula and u by draws differ by more than kDisagreement.
+  kLowFrequency,   ///< f0 is below the filter's cutoff.
+  kShortTime,      ///< T is much shorter than the settling time.
+  kFewTrials,      ///< Fewer than rule (3) asks for.
+  kNotStable,      ///< The adaptive procedure ended on its limit.
+  kGuard,          ///< A search beats its trial.
+  kCrowded,        ///< More signals than the trials have room for.
+  kTrialsRedrawn,  ///< More than 1 % of the draws of the trials were no device.
+  kRedrawn,        ///< The same of the draws of the uncertainty of E.
+  kNoUncertainty,  ///< The draws for the uncertainty of E have failed.
+  kMeasurement,    ///< Points are flagged.
+};
+
+inline constexpr Warning kWarnings[] = {
+    Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
+    Warning::kLowFrequency,  Warning::kShortTime,   Warning::kFewTrials,     Warning::kNotStable,
+    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn, Warning::kRedrawn,
+    Warning::kNoUncertainty, Warning::kMeasurement,
+};
+
+/// @returns Whether this has to be said of these results. The report then has a part
+/// ReportPart::kWarning on it, and results.json a line.
+bool holds(Warning warning, const EvaluationResults& results,
+           const ReportContext& context) noexcept;
+
+/// @returns "fit", "damping", "fit_draws", "energy", "monte_carlo", "uncertainty" or
+/// "measurement".
+const char* about(Warning warning) noexcept;
+
+/// @returns Where in the report it is said at length.
+ReportSection place_of(Warning warning) noexcept;
+
+/// @returns One line. Never null.
+const char* words_of(Warning warning) noexcept;
+
+/// @returns The number of the parameter (0 is S, 1 is f0, 2 is beta) whose u by formula and u by
+/// draws disagree; 3 if none does.
+std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept;
+
+/// Of u by formula and u by draws: more is a warning.
+inline constexpr double kDisagreement = 0.2;
+
+/// T shorter than this part of the settling time is much shorter.
+inline constexpr double kMuchShorter = 0.5;
+
+}  // namespace emax::app

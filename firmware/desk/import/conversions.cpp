@@ -1,0 +1,169 @@
+// How the columns of a table become numbers in Hz, V/(m/s^2) and rad.
+#include "desk/import/conversions.hpp"
+
+#include <string_view>
+
+namespace emax::desk {
+
+namespace {
+
+constexpr char kExpectedUncertainty[] =
+    "expected a column with it, or --uncertainty 1%,1deg (expanded, k = 2)";
+
+std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+
+class ConversionSetter final {
+ public:
+  ConversionSetter(const FoundTable& table, const ImportOptions& options, Conversions& by)
+      : table_(table), options_(options), by_(by) {}
+
+  ImportError run() {
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      const Role role = table_.columns[i].role;
+      if (role == Role::kIgnored) {
+        continue;
+      }
+      Conversion& conversion = by_.of(role);
+      if (conversion.is_there) {
+        return error_at(table_.header_line + 1,
+                        quoted(conversion.name) + " and " + quoted(table_.columns[i].name) +
+                            " name the same quantity",
+                        "expected one column of each");
+      }
+      conversion.is_there = true;
+      conversion.column = i;
+      conversion.name = table_.columns[i].name;
+      conversion.sign = table_.columns[i].is_lag ? -1.0 : 1.0;
+      conversion.coverage = table_.columns[i].is_standard ? 1.0 : kImportCoverage;
+    }
+    if (ImportError error = set_units()) {
+      return error;
+    }
+    return check_uncertainties();
+  }
+
+ private:
+  ImportError set_units() {
+    const bool is_omega = table_.columns[by_.frequency().column].is_omega;
+    ImportError error = set_unit(by_.frequency(), Quantity::kFrequency, options_.frequency_unit,
+                                 is_omega ? kRadiansPerSecond : kHertz);
+    if (!error) {
+      error = set_amplitude_unit();
+    }
+    if (!error && by_.phase().is_there) {
+      error = set_unit(by_.phase(), Quantity::kPhase, options_.phase_unit, kDegree);
+    }
+    if (!error && by_.u_amplitude().is_there) {
+      error = set_uncertainty_unit(by_.u_amplitude(), by_.amplitude());
+    }
+    if (!error && by_.u_phase().is_there) {
+      error =
+          set_uncertainty_unit(by_.u_phase(), by_.phase().is_there ? by_.phase() : by_.u_phase());
+    }
+    return error;
+  }
+
+  ImportError unknown_unit(const Conversion& conversion, Quantity quantity) const {
+    return error_at(table_.header_line + 1,
+                    "the unit " + quoted(table_.columns[conversion.column].unit_spelling) + " of " +
+                        quoted(conversion.name) + " is not known",
+                    expected_units(quantity));
+  }
+
+  ImportError set_unit(Conversion& conversion, Quantity quantity, const Unit& given,
+                       const Unit& by_default) const {
+    const std::string& spelling = table_.columns[conversion.column].unit_spelling;
+    if (spelling.empty()) {
+      conversion.unit = given.is_given() ? given : by_default;
+      return {};
+    }
+    conversion.unit = find_unit(spelling);
+    if (!conversion.unit.is_given() || conversion.unit.quantity != quantity) {
+      return unknown_unit(conversion, quantity);
+    }
+    return contradiction(conversion, given);
+  }
+
+  ImportError contradiction(const Conversion& conversion, const Unit& given) const {
+    if (!given.is_given() || std::string_view(given.name) == conversion.unit.name) {
+      return {};
+    }
+    return error_at(table_.header_line + 1,
+                    std::string("the header says ") + conversion.unit.name +
+                        " and --input-units says " + given.name,
+                    "expected --input-units only for columns whose unit is not named");
+  }
+
+  ImportError set_amplitude_unit() {
+    const DecibelUnit decibel = as_decibel(table_.columns[by_.amplitude().column].unit_spelling);
+    if (!decibel.is_decibel) {
+      return set_unit(by_.amplitude(), Quantity::kAmplitude, options_.amplitude_unit,
+                      kVoltsPerAcceleration);
+    }
+    by_.amplitude().is_decibel = true;
+    by_.amplitude().unit =
+        decibel.reference.empty() ? kVoltsPerAcceleration : find_unit(decibel.reference);
+    if (decibel.reference.empty() && options_.amplitude_unit.is_given()) {
+      by_.amplitude().unit = options_.amplitude_unit;
+    }
+    return !by_.amplitude().unit.is_given() || by_.amplitude().unit.quantity != Quantity::kAmplitude
+               ? unknown_unit(by_.amplitude(), Quantity::kAmplitude)
+               : ImportError{};
+  }
+
+  // An uncertainty is in its own unit, in percent or dB, or in the unit of what it belongs to.
+  ImportError set_uncertainty_unit(Conversion& u, const Conversion& of) const {
+    const std::string& spelling = table_.columns[u.column].unit_spelling;
+    const bool is_amplitude = &u == &by_.of(Role::kAmplitudeUncertainty);
+    if (spelling.empty()) {
+      u.unit = of.unit.is_given() ? of.unit : kDegree;
+      u.is_decibel = of.is_decibel;
+      return {};
+    }
+    u.unit = find_unit(spelling);
+    u.is_decibel = is_amplitude && as_decibel(spelling).is_decibel;
+    u.is_relative = is_amplitude && u.unit.is_given() && u.unit.quantity == Quantity::kRatio;
+    const Quantity wanted = is_amplitude ? Quantity::kAmplitude : Quantity::kPhase;
+    const bool is_plain = u.unit.is_given() && u.unit.quantity == wanted;
+    if (u.is_decibel) {
+      u.unit = kDecibelUnit;
+    }
+    return is_plain || u.is_decibel || u.is_relative
+               ? ImportError{}
+               : unknown_unit(u, is_amplitude ? Quantity::kRatio : Quantity::kPhase);
+  }
+
+  ImportError check_uncertainties() {
+    const bool is_amplitude_given = options_.amplitude_uncertainty.value > 0.0;
+    const bool is_phase_given = options_.phase_uncertainty.value > 0.0;
+    if (!by_.u_amplitude().is_there && !is_amplitude_given) {
+      return error_at(table_.header_line + 1, "there is no uncertainty of the amplitude",
+                      kExpectedUncertainty);
+    }
+    if (by_.phase().is_there && !by_.u_phase().is_there && !is_phase_given) {
+      return error_at(table_.header_line + 1, "there is no uncertainty of the phase",
+                      kExpectedUncertainty);
+    }
+    const bool all_there =
+        by_.u_amplitude().is_there && (by_.u_phase().is_there || !by_.phase().is_there);
+    if (all_there && (is_amplitude_given || is_phase_given)) {
+      return error_at(table_.header_line + 1, "the table has uncertainties of its own",
+                      "expected --uncertainty only for a table without them");
+    }
+    return {};
+  }
+
+  const FoundTable& table_;
+  const ImportOptions& options_;
+  Conversions& by_;
+};
+
+}  // namespace
+
+ImportError set_conversions(const FoundTable& table, const ImportOptions& options,
+                            Conversions& conversions) {
+  conversions = Conversions();
+  return ConversionSetter(table, options, conversions).run();
+}
+
+}  // namespace emax::desk

@@ -1,0 +1,36 @@
+// Where in a text the table is: its layout, its header, its first row.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "desk/import/import_error.hpp"
+#include "desk/import/table_header.hpp"
+#include "desk/import/table_layout.hpp"
+#include "desk/import/table_text.hpp"
+
+namespace emax::desk {
+
+/// A table in its text. Lines count from 0.
+struct FoundTable {
+  TableText text;
+  TableLayout layout;
+  std::vector<Column> columns;
+  std::size_t header_line = 0;
+  std::size_t first_row = 0;
+  bool is_native = false;  ///< It has no header and is taken as the native form.
+
+  /// @returns The cells of a line without its comment.
+  std::vector<std::string> cells(std::size_t line) const;
+};
+
+/// Decodes a text and finds the table in it: lines before the header are passed over; a header may
+/// have a row of units below it, or be a comment. Without one the table must have the five columns
+/// of the native form.
+///
+/// @param[out] table Of no use after an error.
+ImportError find_table(std::string_view bytes, FoundTable& table);
+
+}  // namespace emax::desk
