@@ -79,7 +79,7 @@ class EvaluationWorkspace {
 
   enum class FigurePhase : std::uint8_t { kSearch, kBound, kPrediction, kTrials, kEnd };
   static_assert(!kHasDefaultCapacities ||
-                sizeof(FigureModel) <= sizeof(double) * packed_size(kPhiCells));
+                sizeof(FigureModel) <= sizeof(double) * kWorkspaceNumbers);
 
   Span<double> store_;
   Span<TrialPiece> pieces_;
