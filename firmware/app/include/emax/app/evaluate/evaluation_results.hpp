@@ -74,6 +74,7 @@ struct EnergyUncertainty {
   CoverageInterval symmetric;  ///< In V^2 s.
   CoverageInterval shortest;
   double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a) over the trials.
+  GuardResults guard;
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
 };
