@@ -23,6 +23,10 @@ struct StageCost {
   Ticks sum = 0;
   Ticks longest = 0;
 };
+struct StageName {
+  app::Stage stage;
+  const char* text;
+};
 using StageCosts = std::array<StageCost, kStages>;
 
 /// Points of the device itself, at the frequencies of a default sweep.
@@ -61,15 +65,13 @@ Status run(const app::Settings& settings, Evaluations& work, StageCosts& costs) 
 }  // namespace
 
 Status count_steps(std::uint32_t duration_ms, Rows& rows) noexcept {
-  struct Name {
-    app::Stage stage;
-    const char* text;
-  };
-  constexpr Name kNames[] = {
+  constexpr StageName kNames[] = {
       {app::Stage::kIdle, "step_start"},        {app::Stage::kModel, "step_model"},
       {app::Stage::kFitDraws, "step_fit"},      {app::Stage::kEnergy, "step_energy"},
       {app::Stage::kBound, "step_bound"},       {app::Stage::kPrediction, "step_prediction"},
       {app::Stage::kMonteCarlo, "step_trials"}, {app::Stage::kGuard, "step_guard"},
+      {app::Stage::kIdeal, "step_ideal"},       {app::Stage::kBand, "step_band"},
+      {app::Stage::kMatched, "step_matched"},   {app::Stage::kUncertainty, "step_uncertainty"},
       {app::Stage::kTrend, "step_trend"},
   };
   Evaluations& work = memory().evaluations.make();
@@ -80,7 +82,7 @@ Status count_steps(std::uint32_t duration_ms, Rows& rows) noexcept {
   settings.trend_count = 2;
   StageCosts costs = {};
   const Status status = run(settings, work, costs);
-  for (const Name& name : kNames) {
+  for (const StageName& name : kNames) {
     rows.add(name.text, duration_ms,
              instructions_of(costs[static_cast<std::size_t>(name.stage)].longest));
   }
@@ -96,6 +98,13 @@ Status count_report(Rows& rows) noexcept {
   Ticks sum = 0;
   for (const StageCost& cost : costs) {
     sum += cost.sum;
+  }
+  constexpr StageName kFigures[] = {{app::Stage::kIdeal, "stage_ideal"},
+                                    {app::Stage::kBand, "stage_band"},
+                                    {app::Stage::kMatched, "stage_matched"},
+                                    {app::Stage::kUncertainty, "stage_uncertainty"}};
+  for (const StageName& figure : kFigures) {
+    rows.add(figure.text, instructions_of(costs[static_cast<std::size_t>(figure.stage)].sum));
   }
   const StageCost& trials = costs[static_cast<std::size_t>(app::Stage::kMonteCarlo)];
   rows.add("report", instructions_of(sum - trials.sum));

@@ -3,6 +3,7 @@
 usage: test_readme.py PROGRAM PROJECT_DIRECTORY
 """
 
+import csv
 import json
 import os
 import pathlib
@@ -13,6 +14,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
+import in_band_picture
 from instruments import HostProgram
 
 PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
@@ -80,7 +82,7 @@ class ReadmeTest(unittest.TestCase):
         self.assert_excerpt(self.block_after("(shortened):"), printed)
         drawn = sorted(path.name for path in (self.directory / "results").glob("*.svg"))
         self.assertEqual(len(drawn), 5)
-        self.assertEqual(sorted(path.name for path in SHOWN.iterdir()), sorted(["comparison.svg", *drawn]))
+        self.assertEqual(sorted(path.name for path in SHOWN.iterdir()), sorted(["comparison.svg", "in_band.csv", "in_band.svg", *drawn]))
         for picture in drawn:
             self.assert_shown(picture, self.directory / "results" / picture)
 
@@ -104,9 +106,27 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (3, "", printed))
 
     def test_tour(self):
-        printed = self.print_of(self.block_after("so give one `--limit` to all:"))
+        printed = self.print_of(self.block_after("Without `--by`:"))
         self.assertEqual(printed, self.block_after("--out comparison\n```\n\nprints\n"))
         self.assert_shown("comparison.svg", self.directory / "comparison/comparison.svg")
+
+    def test_both_figures_over_the_resonance(self):
+        table = SHOWN / "in_band.csv"
+        with open(table, encoding="ascii", newline="") as file:
+            rows = {(row["f0/fc"], row["beta"]): row for row in csv.DictReader(file)}
+        self.assertEqual(len(rows), len(in_band_picture.RATIOS) * len(in_band_picture.DAMPINGS))
+        for ratio, damping in [(1, "0.7"), (3.15, "0.02"), (10, "0.7")]:
+            band, matched = in_band_picture.figures(PROGRAM, ratio, damping)
+            row = rows[f"{ratio:g}", damping]
+            self.assertEqual(row["in_band_percent"], f"{band:.6g}")
+            self.assertEqual(row["matched_percent"], "" if matched is None else f"{matched:.6g}")
+        # DESIGN: 2 kHz, 0.7: 23.6 and 1.01 %; 8 kHz, 0.7: 6.007 and 0.0176 %.
+        for key, figures in [(("2", "0.7"), (23.6, 1.01)), (("8", "0.7"), (6.007, 0.0176))]:
+            for name, figure in zip(["in_band_percent", "matched_percent"], figures):
+                self.assertAlmostEqual(float(rows[key][name]) / figure, 1.0, delta=0.003)
+        drawn = self.directory / "in_band.svg"
+        in_band_picture.draw(str(table), str(drawn))
+        self.assert_shown("in_band.svg", drawn)
 
     def test_pyvisa(self):
         command, printed = self.session("python3 example.py ")

@@ -127,6 +127,31 @@ class CheckCertificate(unittest.TestCase):
         self.rejects(free, "a run that may exist")
 
 
+class CheckInBandCertificate(unittest.TestCase):
+    # DESIGN: closed form at refined switches, the reference without a delay.
+    IN_BAND = {"10": 7.66114200e-6, "4": 2.02966723e-5}
+
+    def test_accepts_what_the_program_proves_of_the_error_in_band(self):
+        for order, known in self.IN_BAND.items():
+            with self.subTest(order=order), tempfile.TemporaryDirectory() as directory:
+                path = pathlib.Path(directory) / "certificate.json"
+                run = certify("--criterion", "band", "--order", order, "--effort", EFFORT, "--out", str(path))
+                self.assertEqual((run.returncode, run.stderr), (0, b""))
+                self.assertIn(b"in band, the reference without a delay", run.stdout)
+                certificate = json.loads(path.read_text(encoding="ascii"))
+                self.assertAlmostEqual(certificate["energy"]["E"] / known, 1.0, delta=1e-8)
+                self.assertLess(certificate["bound"], 1.04 * known)  # The quick bound has 3.6 % at order 10.
+                check_certificate.check(certificate)
+                certificate["model"]["criterion"] = "ise"
+                with self.assertRaises(check_certificate.Rejected):
+                    check_certificate.check(certificate)
+
+    def test_refuses_the_energy_difference(self):
+        run = certify("--criterion", "difference")
+        self.assertEqual((run.returncode, run.stdout), (2, b""))
+        self.assertIn(b"expected ise or band", run.stderr)
+
+
 class CertifyStops(unittest.TestCase):
     def test_ctrl_c_keeps_what_is_proven(self):
         with tempfile.TemporaryDirectory() as directory:

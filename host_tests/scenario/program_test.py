@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+import results_schema
+
 PROGRAM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
 
 MODEL = ["--model", "1.037,4073,0.3182,0.003,6,0.0004"]
@@ -34,7 +36,20 @@ class ProgramTest(unittest.TestCase):
     def run_program(self, *arguments, **options) -> subprocess.CompletedProcess:
         settings = {"stdin": subprocess.DEVNULL} if "input" not in options else {}
         settings |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 100, "cwd": self.directory}
-        return subprocess.run([PROGRAM, *map(str, arguments)], check=False, **(settings | options))
+        result = subprocess.run([PROGRAM, *map(str, arguments)], check=False, **(settings | options))
+        self.check_results([*map(str, arguments)], result.stdout)
+        return result
+
+    def check_results(self, arguments, output) -> None:
+        """Whatever results.json a report prints or leaves must be as its schema says."""
+        if "report" not in arguments[:1]:
+            return
+        texts = [output] if "--json" in arguments and output else []
+        if "--out" in arguments[:-1]:
+            path = os.path.join(self.directory, arguments[arguments.index("--out") + 1], "results.json")
+            texts += [pathlib.Path(path).read_bytes()] if os.path.isfile(path) else []
+        for text in texts:
+            self.assertEqual(results_schema.faults_of_text(text), [])
 
     def start_program(self, *arguments, **options) -> subprocess.Popen:
         settings = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}

@@ -463,7 +463,7 @@ class BadOptions(ProgramTest):
                     said = "emax: --acceleration-limit" if value == "21" else f'emax: {option}: "{value}" given'
                     self.refuse(["report", option, value, "--out", "out"], said, "expected")
         self.refuse(["report", "--level", "30"], "--acceleration-limit: 20 by default", "at least the level")
-        self.refuse(["report", "--time", "10", "--out", "out"], "emax: --time: ", "8192 cells")
+        self.refuse(["report", "--time", "10", "--out", "out"], "emax: --time: ", "65536 cells")
 
     def test_bench_options_exclude_other_devices(self):
         options = {"seed": 1, "truth": "1,4000,0.3", "noise": 0, "fault": "none"}
@@ -475,17 +475,17 @@ class BadOptions(ProgramTest):
             self.refuse(["report", "--points", "x", option, value], f"emax: {option}: excluded by --points")
 
     def test_what_the_memory_does_not_hold(self):
-        self.refuse_option("--time", "10", "8192 cells")
-        self.refuse_option("--trend", "0.001,10", "8192 cells")
+        self.refuse_option("--time", "10", "65536 cells")
+        self.refuse_option("--trend", "0.001,10", "65536 cells")
         paper = [*MODEL, "--method", "paper"]
-        self.refuse_option("--time", "0.1", "8192 cells", device=paper)
-        # Of 2 us by default. 2 numbers for each of 9 modes at 257 places, and 6 for each of 256 switches.
-        line = self.refuse_option("--time", "0.012326", "(the room is for 6162 cells)", device=paper)
+        self.refuse_option("--time", "0.2", "65536 cells", device=paper)
+        # Of 2 us by default. 2 numbers for each of 9 modes at 2049 places, and 6 for each of 2048 switches.
+        line = self.refuse_option("--time", "0.098342", "(the room is for 49170 cells)", device=paper)
         self.assertEqual(line.count("cells"), 2)
 
     def test_more_signs_than_the_table_holds(self):
         device = ["--model", "1,10000,0.01", "--method", "paper", "--step", "1e-5", "--trend", "none"]
-        self.refuse_option("--time", "0.05", "256", "shorten", device=device)
+        self.refuse_option("--time", "0.12", "2048", "shorten", device=device)
 
 
 class Bench(ProgramTest):

@@ -54,6 +54,10 @@ ROWS = {
     "step_prediction.2ms": "preparation of the trials",
     "step_trials.2ms": "trials",
     "step_guard.2ms": "guard",
+    "step_ideal.2ms": "ideal sensor",
+    "step_band.2ms": "in-band error, with its trials",
+    "step_matched.2ms": "the same, constant delay taken out",
+    "step_uncertainty.2ms": "uncertainty of E",
     "step_trend.2ms": "trend",
     "step_start.10ms": "longest step, T = 10 ms: start, with the fit of 42 points",
     "step_model.10ms": "error system, peak, settling time, largest absolute error",
@@ -63,8 +67,16 @@ ROWS = {
     "step_prediction.10ms": "preparation of the trials",
     "step_trials.10ms": "trials",
     "step_guard.10ms": "guard",
+    "step_ideal.10ms": "ideal sensor",
+    "step_band.10ms": "in-band error, with its trials",
+    "step_matched.10ms": "the same, constant delay taken out",
+    "step_uncertainty.10ms": "uncertainty of E",
     "step_trend.10ms": "trend",
-    "report": "default evaluation of 42 points without its trials",
+    "stage_ideal": "T = 2 ms, all of it: ideal sensor",
+    "stage_band": "in-band error: search, bound, preparation, 1000 trials, guard",
+    "stage_matched": "the same, constant delay taken out",
+    "stage_uncertainty": "uncertainty of E: preparation, 1000 trials, guard",
+    "report": "default evaluation of 42 points without the trials over the box",
 }
 
 

@@ -5,23 +5,25 @@
 
 namespace emax {
 
-void EnergyGuard::start(std::uint32_t trial_count, std::uint32_t trial_of_maximum) noexcept {
+void EnergyGuard::start(std::uint32_t trial_count, std::uint32_t trial_of_maximum,
+                        std::uint32_t spread) noexcept {
   *this = EnergyGuard();
   trial_count_ = trial_count;
   trial_of_maximum_ = trial_of_maximum;
-  wanted_ = kSearches;
+  wanted_ = spread + 1;
 }
 
 double EnergyGuard::progress() const noexcept {
   return wanted_ == 0 ? 1.0 : static_cast<double>(made_) / static_cast<double>(wanted_);
 }
 
-/// The middles of kSpread equal parts of all trials, then the maximum.
+/// The middles of equal parts of all trials, then the maximum.
 std::uint32_t EnergyGuard::trial_number() const noexcept {
-  if (made_ == kSpread) {
+  const std::uint32_t spread = wanted_ - 1;
+  if (made_ == spread) {
     return trial_of_maximum_;
   }
-  return static_cast<std::uint32_t>(std::uint64_t{trial_count_} * (2 * made_ + 1) / (2 * kSpread));
+  return static_cast<std::uint32_t>(std::uint64_t{trial_count_} * (2 * made_ + 1) / (2 * spread));
 }
 
 Status EnergyGuard::end_search(Status status) noexcept {

@@ -68,15 +68,22 @@ bool take_effort(std::string_view text, double& effort_s) {
          number.value <= kMaxEffort_s;
 }
 
+constexpr char kCriterionHelp[] =
+    "ise, the integral-square error, or band, the error within the\n"
+    "filter's band against the reference without a delay";
+
 // The first ones mean here what they mean for a report.
 Syntax syntax_of(CertifyOptions& options) {
   ReportOptions& report = options.report;
   Syntax syntax;
   for (const char* name :
        {"points", "model", "reference-uncertainty", "uncertainty", "input-units", "channel-delay",
-        "invert", "damping", "order", "cutoff", "gain", "time", "limit"}) {
-    const bool is_order = std::string_view(name) == "order";
-    syntax.options.push_back(report_option(report, name, is_order ? "order, 2 to 15" : nullptr));
+        "invert", "damping", "order", "cutoff", "gain", "time", "limit", "criterion"}) {
+    const std::string_view wanted = name;
+    const char* const words = wanted == "order"       ? "order, 2 to 15"
+                              : wanted == "criterion" ? kCriterionHelp
+                                                      : nullptr;
+    syntax.options.push_back(report_option(report, name, words));
   }
   syntax.options.push_back(report_option(report, "json",
                                          "{E,bound,gap,cells,multipliers,nodes,seconds,\n"
@@ -105,6 +112,12 @@ Problem parse(Span<const std::string_view> arguments, CertifyOptions& options) {
   if (options.report.measures()) {
     return bad_input("certify: no device; expected --model S,f0,beta or --points FILE");
   }
+  app::Settings& settings = options.report.settings;
+  if (settings.criterion == Criterion::kEnergyDifference) {
+    return bad_input(
+        "--criterion: the proof needs an energy that is a square; expected ise or band");
+  }
+  settings.delay_choice = app::DelayChoice::kNone;
   return check_report_options(all, options.report);
 }
 
@@ -360,7 +373,9 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
       .integer(static_cast<std::uint64_t>(filter.relative_degree));
   out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
   out.text(" V/(m/s^2)\nSignals     of any shape within +-").general(proven.limit_mps2, 7);
-  out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n\n");
+  out.text(" m/s^2 for ").general(duration_s, 7).text(" s\n");
+  const bool is_in_band = proven.model->criterion() == Criterion::kInBandError;
+  out.text(is_in_band ? "Error       in band, the reference without a delay\n\n" : "\n");
   out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");
   out.integer(switches).text(switches == 1 ? " switch\n" : " switches\n");
   out.text("Proven      E <= ").general(rounded_up(proven.bound_v2s(), 6), 7);
@@ -441,7 +456,7 @@ std::string help_on_certify() {
        emax certify --points FILE [options]
 
 Proves how far the maximum energy of emax report can be from the truth: a bound
-of the integral-square error that no signal within +-a on [0, T] exceeds,
+of the integral-square error (or the in-band error) that no signal within +-a on [0, T] exceeds,
 whatever its shape. The longer it runs the tighter the bound; Ctrl-C ends it
 early with what is proven by then.
 )" + help_on(syntax_of(options).options);

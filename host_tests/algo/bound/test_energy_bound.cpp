@@ -375,7 +375,7 @@ TEST(EnergyBound, RefusesWhatItCannotDo) {
     EXPECT_EQ(bound.start(model, bad, workspace), Status::kInvalidArgument);
     EXPECT_EQ(check.start(model, bad, 100), Status::kInvalidArgument);
   }
-  EXPECT_EQ(bound.start(model, 1.0, workspace), Status::kTooManyCells);
+  EXPECT_EQ(bound.start(model, 2.0, workspace), Status::kTooManyCells);
   EXPECT_EQ(check.start(model, 2e-3, 0), Status::kInvalidArgument);
 }
 

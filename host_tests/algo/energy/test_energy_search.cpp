@@ -262,7 +262,7 @@ TEST(EnergySearch, RefusesWhatItCannotDo) {
   for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(search.start(model, best_for(bad)), Status::kInvalidArgument);
   }
-  EXPECT_EQ(search.start(model, best_for(1.0)), Status::kTooManyCells);
+  EXPECT_EQ(search.start(model, best_for(2.0)), Status::kTooManyCells);
   SearchSettings paper = best_for(2e-3);
   paper.method = Method::kPaper;
   paper.step_s = 2e-6;
@@ -307,10 +307,12 @@ INSTANTIATE_TEST_SUITE_P(
         Known{{1.0, 300.0, 0.5}, {4, 1000.0, 1.0}, 4e-3, kDifference, 2.18566579e-4}));
 
 TEST(EnergySearch, MoreSwitchesThanTheTableHoldsAreAnErrorNotAWrongAnswer) {
-  // A lightly damped sensor is worst at its resonance: two switches per period, 408 in 50 ms.
+  // A lightly damped sensor is worst at its resonance: two switches per period, and here a tenth
+  // more than there is room for.
+  const double too_long_s = 1.1 * static_cast<double>(kMaxSwitches) / (2.0 * 4073.0);
   ModalModel model{};
   ASSERT_EQ(model.set({1.0, 4073.0, 0.001}, {2, 1000.0, 1.0}, kIse), Status::kOk);
-  EXPECT_EQ(run(model, best_for(50e-3)), Status::kTooManySwitches);
+  EXPECT_EQ(run(model, best_for(too_long_s)), Status::kTooManySwitches);
   EXPECT_EQ(run(model, best_for(20e-3)), Status::kOk);
   EXPECT_GT(search.result().signal.count(), 100u);
 }

@@ -155,7 +155,7 @@ TEST(SwitchingSignal, RefusesWhatItCannotHoldAndStaysAsItWas) {
   EXPECT_EQ(set({0.5, 0.4}, 1.0), Status::kNotAscending);
   std::vector<double> many(kMaxSwitches + 1);
   for (std::size_t i = 0; i < many.size(); ++i) {
-    many[i] = 1e-3 * static_cast<double>(i + 1);
+    many[i] = 1e-4 * static_cast<double>(i + 1);
   }
   EXPECT_EQ(set(many, 1.0), Status::kTooManySwitches);
   test::SignPattern signs(kMaxSwitches + 2);

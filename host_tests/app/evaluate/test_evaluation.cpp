@@ -433,16 +433,16 @@ TEST(Evaluation, RefusesUncertainties) {
 }
 
 TEST(Evaluation, RefusesTimesThatTakeTooManyCells) {
-  // 12 cells per period of 4073 Hz: 8192 cells last for 0.1676 s.
+  // 12 cells per period of 4073 Hz: the 65 536 cells of a PC last for 1.3409 s.
   Settings settings = quick_settings();
-  settings.duration_s = 0.168;
-  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "(T = 0.168 s)");
-  EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, 0.168);
+  settings.duration_s = 1.341;
+  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "(T = 1.341 s)");
+  EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, 1.341);
   settings = quick_settings();
   settings.trend_count = 3;
-  settings.trend_s[2] = 0.2;
-  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend, "(T = 0.2 s)");
-  settings = paper_settings(0.0164);
+  settings.trend_s[2] = 2.0;
+  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend, "(T = 2 s)");
+  settings = paper_settings(0.1312);
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "longer step");
 }
 

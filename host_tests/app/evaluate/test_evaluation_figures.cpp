@@ -83,10 +83,51 @@ TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {
   EXPECT_EQ(results.status(), Status::kOk);
   EXPECT_NEAR(results.energy_v2s(), 3.44175215e-8, 0.5e-16);
   EXPECT_EQ(results.trend_looked_at, 5U);
+  EXPECT_EQ(results.trend_count, 5U) << "two switches in each of 550 periods at most, for 2048";
   Settings asked = emax::app::kDefaultSettings;
   asked.trend_s = {0.002, 1.0};
   asked.trend_count = 2;
   EXPECT_EQ(evaluated({{0.0102, 55000.0, 0.01}, {}}, asked).status(), Status::kTooManyCells);
+  // 2200 switches in 10 ms.
+  EvaluationResults& longer = emax::test::shared_evaluation();
+  ASSERT_EQ(
+      emax::test::run_on(longer).start_from_model(
+          {{0.0102, 110000.0, 0.005}, {}}, emax::app::kDefaultSettings, emax::app::Goal::kTrend),
+      Status::kOk);
+  emax::test::finish(longer);
+  EXPECT_EQ(longer.status(), Status::kOk);
+  EXPECT_EQ(longer.trend_left_out, std::uint32_t{1} << 4U);
+  EXPECT_EQ(longer.trend_count, 4U);
+}
+
+TEST(EvaluationFigures, GuardsEachUncertainty) {
+  Settings settings = quick_settings();
+  const EvaluationResults& results = evaluated(kPaper, settings);
+  ASSERT_EQ(results.status(), Status::kOk);
+  EXPECT_EQ(results.guard.searches, 9U);
+  for (const emax::app::EnergyUncertainty* known :
+       {&results.uncertainty, &results.band.uncertainty, &results.matched.uncertainty}) {
+    ASSERT_TRUE(known->exists());
+    EXPECT_EQ(known->guard.searches, 5U);
+    EXPECT_EQ(known->guard.disagreements, 0U);
+    // Polynomials hold to 1e-10 of E, or to 1e-6 of u.
+    EXPECT_LT(known->guard.largest_excess, 1e-8);
+  }
+  // The trials over the box are the normal ones: made once, and guarded as these.
+  settings.distribution = emax::Distribution::kNormal;
+  const emax::app::EnergyUncertainty normal = results.uncertainty;
+  const EvaluationResults& once = evaluated(kPaper, settings);
+  ASSERT_TRUE(once.uncertainty.exists());
+  EXPECT_EQ(once.uncertainty.u_v2s, normal.u_v2s);
+  EXPECT_EQ(once.uncertainty.u_percent, normal.u_percent);
+  EXPECT_EQ(once.uncertainty.guard.searches, 9U);
+  settings.method = emax::Method::kPaper;
+  settings.distribution = emax::Distribution::kBox;
+  settings.step_s = 2e-5;
+  const EvaluationResults& paper = evaluated(kPaper, settings);
+  ASSERT_TRUE(paper.uncertainty.exists());
+  EXPECT_EQ(paper.uncertainty.guard.searches, 0U) << "its trials are full runs";
+  EXPECT_EQ(paper.band.uncertainty.guard.searches, 5U);
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST(Goals, ARefusalLeavesTheResults) {
   other.trials = 999;
   refused(other, Status::kInvalidArgument);
   other = settings;
-  other.trend_s[1] = 0.2;
+  other.trend_s[1] = 2.0;
   refused(other, Status::kTooManyCells);
   // What no goal asks for does not matter.
   ASSERT_EQ(run_on(*evaluation).pursue(other, Goal::kMonteCarlo), Status::kOk);
@@ -203,12 +203,16 @@ TEST(Goals, TrialsOfThePaperHaveRoomForFewerCells) {
   Settings settings = quick_settings();
   settings.method = Method::kPaper;
   settings.iterations = 1;
+  // 2 numbers for each of 9 modes between the switches, and 6 for each of them.
+  const auto room = static_cast<double>(6 * emax::kMaxSwitches + 2 * 9 * (emax::kMaxSwitches + 1));
   settings.duration_s = 6162 * 2e-6;
   const auto evaluation = std::make_unique<EvaluationResults>();
   EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings), Status::kOk);
   finish(*evaluation);
   EXPECT_TRUE(evaluation->has_monte_carlo);
-  settings.duration_s = 6163 * 2e-6;
+  settings.duration_s = room * 2e-6;
+  EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings), Status::kOk);
+  settings.duration_s = (room + 1.0) * 2e-6;
   EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings), Status::kTooManyCells);
   EXPECT_EQ(evaluation->failure.stage, Stage::kMonteCarlo);
   EXPECT_EQ(run_on(*evaluation).start_from_model(kTable2, settings, Goal::kTrend), Status::kOk);

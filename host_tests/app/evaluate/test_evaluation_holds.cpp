@@ -181,7 +181,7 @@ TEST(EvaluationHoldsGoals, NothingAfterARefusal) {
   Settings settings = quick_settings();
   const auto results = std::make_unique<EvaluationResults>();
   run(*results, settings, Goal::kEnergy);
-  settings.duration_s = 0.2;  // Too many cells.
+  settings.duration_s = 2.0;  // Too many cells.
   EXPECT_EQ(run_on(*results).start_from_points(synthetic_points(1.0), settings),
             Status::kTooManyCells);
   for (const Goal goal : kGoals) {

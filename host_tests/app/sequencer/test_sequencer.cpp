@@ -273,11 +273,11 @@ TEST(Sequencer, SaysWhatIsMissing) {
   EXPECT_EQ(rig.evaluate(settings, Goal::kMonteCarlo), Obstacle::kNoUncertainty);
   EXPECT_EQ(rig.evaluate(settings, Goal::kTrend), Obstacle::kNoTimes);
   EXPECT_EQ(rig.evaluate(settings, Goal::kReport), Obstacle::kNone);
-  settings.duration_s = 0.2;
+  settings.duration_s = 2.0;
   const Refusal refusal = rig->evaluate(settings, Goal::kEnergy);
   EXPECT_EQ(refusal.obstacle, Obstacle::kEvaluation);
   EXPECT_EQ(refusal.status, Status::kTooManyCells);
-  EXPECT_EQ(rig->evaluation().failure.duration_s, 0.2);
+  EXPECT_EQ(rig->evaluation().failure.duration_s, 2.0);
   EXPECT_FALSE(rig->is_working());
 }
 
@@ -318,7 +318,7 @@ TEST(Sequencer, AFaultEndsItWithTheDriveAtZero) {
 TEST(Sequencer, PointsThatGiveNoDeviceEndItAfterTheSweep) {
   Rig rig;
   Settings settings = quick_settings();
-  settings.duration_s = 0.2;  // Too many cells for any device with this resonance.
+  settings.duration_s = 2.0;  // Too many cells for any device with this resonance.
   ASSERT_FALSE(rig->measure_and_evaluate(rig.bench, quick_sweep(), settings, Goal::kReport));
   rig.finish();
   EXPECT_EQ(rig->failure().obstacle, Obstacle::kEvaluation);
@@ -460,7 +460,7 @@ TEST(Sequencer, RefusesAFixedPointWithoutAGrid) {
   ASSERT_EQ(rig.evaluate(settings, Goal::kModel), Obstacle::kNone);
   settings.step_s = 0.003;  // Longer than T.
   EXPECT_EQ(rig->iterate_fixed_point(settings).obstacle, Obstacle::kGrid);
-  settings.step_s = 2e-7;  // 10000 cells.
+  settings.step_s = 2e-8;  // 100000 cells.
   EXPECT_EQ(rig->iterate_fixed_point(settings).obstacle, Obstacle::kGrid);
   EXPECT_FALSE(rig->is_working());
 }

@@ -28,8 +28,8 @@ namespace emax {
 inline constexpr std::size_t kMaxSwitches = EMAX_MAX_SWITCHES;
 /// The most cells that a grid may have; 512 to 65536.
 inline constexpr std::size_t kMaxCells = EMAX_MAX_CELLS;
-/// The workspace of a search has room for the packed triangle of Phi with this many cells; 32 to
-/// 1024. The triangle's n (n + 1)/2 numbers must be at least kMaxCells and kRefinementScratch.
+/// The workspace of a search has room for the packed triangle of Phi with this many cells at least;
+/// 32 to 1024. Bounds depend on it, so that it is the same for a board and a PC.
 inline constexpr std::size_t kPhiCells = EMAX_PHI_CELLS;
 /// The most points of a frequency response; 3 to 1024.
 inline constexpr std::size_t kMaxPoints = EMAX_MAX_POINTS;

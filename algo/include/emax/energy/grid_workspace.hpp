@@ -1,6 +1,7 @@
 // The memory that searches, bounds and trials work in.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -15,9 +16,15 @@
 
 namespace emax {
 
+/// How many numbers a workspace holds: the packed triangle of Phi with kPhiCells cells, which is
+/// what a bound works in, or more where a product or a refinement takes more.
+inline constexpr std::size_t kWorkspaceNumbers =
+    std::max({packed_size(kPhiCells), kMaxCells, kRefinementScratch});
+
 /// Memory for signals: what every search and every trial needs while it runs, and nothing
-/// afterwards. 68 KiB. The product, a refinement and a bound are never needed together and share
-/// their place. While trials run, a part of it is the store of the Monte Carlo procedure.
+/// afterwards. 68 KiB with the capacities of a board. The product, a refinement and a bound are
+/// never needed together and share their place. While trials run, a part of it is the store of the
+/// Monte Carlo procedure.
 class GridWorkspace {
  public:
   /// As much of a product as there is room for beside a `MonteCarloStore`.
@@ -53,22 +60,17 @@ class GridWorkspace {
   SwitchingSignal& signal() noexcept { return signal_; }
 
  private:
-  static_assert(packed_size(kPhiCells) >= kMaxCells,
-                "EMAX_PHI_CELLS is too small for EMAX_MAX_CELLS");
-  static_assert(packed_size(kPhiCells) >= kRefinementScratch,
-                "EMAX_PHI_CELLS is too small for EMAX_MAX_SWITCHES");
   // No initialisers, so that an assignment to a member brings it to life.
   struct Shared {
     double refinement[kRefinementScratch];
     MonteCarloStore store;
   };
   union Memory {
-    double numbers[packed_size(kPhiCells)];
-    float singles[2 * packed_size(kPhiCells)];
+    double numbers[kWorkspaceNumbers];
+    float singles[2 * kWorkspaceNumbers];
     Shared shared;
   };
-  static_assert(!kHasDefaultCapacities ||
-                sizeof(Shared) <= sizeof(double) * packed_size(kPhiCells));
+  static_assert(!kHasDefaultCapacities || sizeof(Shared) <= sizeof(double) * kWorkspaceNumbers);
 
   Span<double> all() noexcept {
     return has_store_ ? Span<double>(memory_.shared.refinement) : Span<double>(memory_.numbers);

@@ -20,12 +20,14 @@ namespace emax {
 ///       guard.step(trials, search, workspace);
 ///     }
 ///
-/// Looked at are kSpread trials at equal distances and the one with the largest energy. For trials
+/// Looked at are some trials at equal distances and the one with the largest energy. For trials
 /// of Method::kBest; one of Method::kPaper is a full run already. 48 bytes.
 class EnergyGuard {
  public:
   static constexpr std::uint32_t kSpread = 8;
   static constexpr std::uint32_t kSearches = kSpread + 1;
+  /// Where several figures are guarded, each by this many and its largest.
+  static constexpr std::uint32_t kSpreadOfFigure = 4;
   /// A search disagrees if its energy is above the trial's by more than this part of it, and more
   /// than twice the trials' own tolerance.
   static constexpr double kTolerance = 1e-9;
@@ -34,7 +36,9 @@ class EnergyGuard {
   ///
   /// @param[in] trial_count      The number of trials made, 1 or more.
   /// @param[in] trial_of_maximum Below it.
-  void start(std::uint32_t trial_count, std::uint32_t trial_of_maximum) noexcept;
+  /// @param[in] spread           How many trials at equal distances, beside it.
+  void start(std::uint32_t trial_count, std::uint32_t trial_of_maximum,
+             std::uint32_t spread = kSpread) noexcept;
 
   /// Does one step of one trial or of its search.
   ///

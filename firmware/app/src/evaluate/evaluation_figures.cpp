@@ -113,6 +113,9 @@ void Evaluation::step_figure() noexcept {
     case Phase::kTrials:
       step_figure_trials();
       return;
+    case Phase::kGuard:
+      step_figure_guard();
+      return;
     case Phase::kEnd:
       go_on();
       return;
@@ -130,6 +133,8 @@ double Evaluation::progress_of_figure() const noexcept {
       return work_.part_.trial.trials.progress();
     case Phase::kTrials:
       return progress_of_trials();
+    case Phase::kGuard:
+      return work_.guard_.progress();
     case Phase::kEnd:
       break;
   }
@@ -261,8 +266,32 @@ void Evaluation::step_figure_trials() noexcept {
     refuse_uncertainty(result.status);
     return;
   }
-  EnergyUncertainty& known = uncertainty();
-  known.is_done = true;
+  take_uncertainty(uncertainty());
+  if (part.trials.search_settings().method == Method::kPaper) {
+    uncertainty().is_done = true;
+    work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+    return;
+  }
+  work_.guard_.start(result.trials, result.trial_of_maximum, EnergyGuard::kSpreadOfFigure);
+  work_.progress_ = 0.0;
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kGuard;
+}
+
+void Evaluation::step_figure_guard() noexcept {
+  EnergyGuard& guard = work_.guard_;
+  // A search that fails counts as disagreement.
+  (void)guard.step(work_.part_.trial.trials, work_.search_, work_.grid_);
+  if (guard.done()) {
+    uncertainty().guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
+    uncertainty().is_done = true;
+    work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
+  }
+}
+
+/// What the trials that are done say; the guard is still to come.
+void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
+  const EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  const MonteCarloResult result = part.monte_carlo.result();
   known.status = Status::kOk;
   known.trials = result.trials;
   known.redraws = part.trials.redraws();
@@ -273,14 +302,16 @@ void Evaluation::step_figure_trials() noexcept {
   // percent_of() of an energy is as sqrt(E) is.
   const double variance = part.root.squares / static_cast<double>(part.root.count - 1);
   known.u_percent = results_.percent_of(1.0) * sqrt(variance);
-  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
 }
 
 /// Takes sqrt(E) of a trial while the first pass runs.
 void Evaluation::note_root(double energy_v2s) noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   EvaluationWorkspace::Scatter& root = part.root;
-  if (results_.stage < Stage::kBand || part.monte_carlo.pass() != 1) {
+  const bool is_normal = results_.settings.distribution == Distribution::kNormal;
+  const bool is_wanted =
+      results_.stage >= Stage::kBand || (is_normal && results_.stage == Stage::kMonteCarlo);
+  if (!is_wanted || part.monte_carlo.pass() != 1) {
     return;
   }
   const double value = sqrt(energy_v2s);

@@ -429,10 +429,12 @@ void Evaluation::step_monte_carlo() noexcept {
     (void)fail(failure_of_trials(result.status, Stage::kMonteCarlo, part.trials.is_exhausted()));
     return;
   }
+  if (results_.settings.distribution == Distribution::kNormal) {
+    take_uncertainty(results_.uncertainty);  // These trials are the normal ones.
+  }
   results_.device_at_maximum = part.trials.device(result.trial_of_maximum);
   if (results_.settings.method == Method::kPaper) {
-    results_.has_monte_carlo = true;
-    go_on();
+    end_trials();
     return;
   }
   work_.guard_.start(work_.trials_, result.trial_of_maximum);
@@ -446,9 +448,17 @@ void Evaluation::step_guard() noexcept {
   (void)guard.step(work_.part_.trial.trials, work_.search_, work_.grid_);
   if (guard.done()) {
     results_.guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
-    results_.has_monte_carlo = true;
-    go_on();
+    end_trials();
   }
+}
+
+void Evaluation::end_trials() noexcept {
+  results_.has_monte_carlo = true;
+  if (results_.settings.distribution == Distribution::kNormal) {
+    results_.uncertainty.guard = results_.guard;
+    results_.uncertainty.is_done = true;
+  }
+  go_on();
 }
 
 void Evaluation::step_trend() noexcept {

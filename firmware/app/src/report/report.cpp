@@ -518,24 +518,6 @@ void write_maximum(const EvaluationResults& results, const MonteCarloResult& res
       .line();
 }
 
-void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
-  if (guard.searches == 0) {
-    return;
-  }
-  out.label("Guard").integer(guard.searches).text(" full searches, ");
-  out.integer(guard.disagreements);
-  out.text(guard.disagreements == 1 ? " disagreement" : " disagreements").line();
-  if (guard.disagreements > 0) {
-    out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
-    out.general(kPercent * guard.largest_excess, 3)
-        .text(
-            " % more energy with another signal than\n"
-            "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "
-            "and\n"
-            "  intervals are too low; give smaller uncertainties.\n");
-  }
-}
-
 /// What the trials themselves have to say about their numbers.
 void write_trial_warnings(const TrialResults& trials, ReportWriter& out) noexcept {
   if (trials.branches.is_crowded) {

@@ -125,10 +125,29 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
     out.scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
     write_interval("Symmetric interval", known.symmetric, results.settings.probability, out);
     write_interval("Shortest interval", known.shortest, results.settings.probability, out);
+    write_guard(known.guard, out);
   }
 }
 
 }  // namespace
+
+void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
+  if (guard.searches == 0) {
+    return;
+  }
+  out.label("Guard").integer(guard.searches).text(" full searches, ");
+  out.integer(guard.disagreements);
+  out.text(guard.disagreements == 1 ? " disagreement" : " disagreements").line();
+  if (guard.disagreements > 0) {
+    out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
+    out.general(kPercent * guard.largest_excess, 3)
+        .text(
+            " % more energy with another signal than\n"
+            "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "
+            "and\n"
+            "  intervals are too low; give smaller uncertainties.\n");
+  }
+}
 
 void write_switching_times(std::size_t switches, Span<const double> times_s,
                            ReportWriter& out) noexcept {
@@ -234,6 +253,7 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   out.label("U (k = 2)").scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
   write_interval("Symmetric interval", known.symmetric, probability, out);
   write_interval("Shortest interval", known.shortest, probability, out);
+  write_guard(known.guard, out);
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
     out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();

@@ -17,6 +17,9 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
 /// What JCGM 101 gives for the energy of the criterion.
 void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noexcept;
 
+/// What full searches made of some of the trials.
+void write_guard(const GuardResults& guard, ReportWriter& out) noexcept;
+
 /// "+a from the start, n switches, at (ms)" and the times.
 ///
 /// @param[in] switches The number of them all; `times_s` may hold fewer.

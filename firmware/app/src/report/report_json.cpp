@@ -264,11 +264,19 @@ void write_interval_in_percent(const char* name, const EvaluationResults& result
   json.pair(name, results.percent_of(interval.low), results.percent_of(interval.high));
 }
 
+void write_disagreements(const GuardResults& guard, JsonWriter& json) noexcept {
+  if (guard.searches > 0) {
+    json.integer("disagreements", guard.disagreements);
+  } else {
+    json.null("disagreements");
+  }
+}
+
 void write_figure_uncertainty(const EvaluationResults& results, const EnergyUncertainty& known,
                               JsonWriter& json) noexcept {
   if (!known.exists()) {
-    for (const char* name :
-         {"u", "U", "interval", "shortest", "u_percent", "U_percent", "interval_percent"}) {
+    for (const char* name : {"u", "U", "interval", "shortest", "u_percent", "U_percent",
+                             "interval_percent", "disagreements"}) {
       json.null(name);
     }
     return;
@@ -280,6 +288,7 @@ void write_figure_uncertainty(const EvaluationResults& results, const EnergyUnce
   json.number("u_percent", known.u_percent);
   json.number("U_percent", kCoverageFactor * known.u_percent);
   write_interval_in_percent("interval_percent", results, known.symmetric, json);
+  write_disagreements(known.guard, json);
 }
 
 void write_figure(const EvaluationResults& results, const FigureResults& figure,
@@ -290,6 +299,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
   write_number_or_null("bound", figure.has_bound, figure.bound_v2s, json);
   write_number_or_null("bound_percent", figure.has_bound, results.percent_of(figure.bound_v2s),
                        json);
+  json.integer("switches", figure.switches);
   json.open_row("switch_times");
   for (const double time_s : figure.times_s()) {
     json.number(nullptr, time_s);
@@ -345,6 +355,7 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.pair("interval", known.symmetric.low, known.symmetric.high);
   json.pair("shortest", known.shortest.low, known.shortest.high);
   json.integer("redrawn", known.redraws);
+  write_disagreements(known.guard, json);
   json.close();
 }
 
@@ -394,11 +405,7 @@ void write_monte_carlo(const EvaluationResults& results, JsonWriter& json) noexc
   json.number("u", result.u);
   json.pair("interval", result.symmetric.low, result.symmetric.high);
   json.pair("shortest", result.shortest.low, result.shortest.high);
-  if (results.guard.searches > 0) {
-    json.integer("disagreements", results.guard.disagreements);
-  } else {
-    json.null("disagreements");
-  }
+  write_disagreements(results.guard, json);
   json.close();
 }
 
@@ -638,6 +645,14 @@ void write_trials(const InstrumentState& state, JsonWriter& json) noexcept {
   }
 }
 
+/// What stands where there is no energy.
+void write_nothing_evaluated(JsonWriter& json) noexcept {
+  for (const char* part : {"filter", "impulse_response", "energy", "band", "ideal", "uncertainty",
+                           "monte_carlo", "trend"}) {
+    json.null(part);
+  }
+}
+
 }  // namespace
 
 void write_instrument_json(const InstrumentState& state, TextWriter& out) noexcept {
@@ -695,13 +710,15 @@ void write_sensitivity_json(const EvaluationResults& results, const ReportContex
   json.null("f0");
   json.null("beta");
   json.number("uS", judgement.u_sensitivity);
+  for (const char* number : {"uf0", "ubeta", "covariance", "chi2", "dof", "common_percent"}) {
+    json.null(number);
+  }
   json.words("source", source_of(results, context.measurement));
+  write_label("name", context.source_name, json);
   json.close();
   write_fit(results, context, json);
-  for (const char* part : {"bench", "filter", "impulse_response", "energy", "band", "ideal",
-                           "uncertainty", "monte_carlo", "trend"}) {
-    json.null(part);
-  }
+  write_bench(context.measurement, nullptr, json);
+  write_nothing_evaluated(json);
   write_warnings(results, context, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
@@ -715,10 +732,7 @@ void write_measurement_json(const ReportContext& context, const EvaluationResult
   write_head(context.labels, json);
   json.null("model");
   write_bench(context.measurement, refused, json);
-  for (const char* part : {"filter", "impulse_response", "energy", "band", "ideal", "uncertainty",
-                           "monte_carlo", "trend"}) {
-    json.null(part);
-  }
+  write_nothing_evaluated(json);
   json.open("warnings", '[');
   write_warning("measurement", "a fault has ended the work, so there is no maximum energy", json);
   json.close(']');

@@ -48,6 +48,13 @@ bool has_flags(const ReportContext& context) noexcept {
 
 }  // namespace
 
+bool guards_disagree(const EvaluationResults& results) noexcept {
+  const std::uint32_t of_trials = results.has_monte_carlo ? results.guard.disagreements : 0;
+  return of_trials > 0 || results.uncertainty.guard.disagreements > 0 ||
+         results.band.uncertainty.guard.disagreements > 0 ||
+         results.matched.uncertainty.guard.disagreements > 0;
+}
+
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept {
   const EnergyUncertainty& known = results.uncertainty;
@@ -69,7 +76,7 @@ bool holds(Warning warning, const EvaluationResults& results,
     case Warning::kNotStable:
       return results.has_monte_carlo && results.settings.adaptive && !results.adaptive.stabilised;
     case Warning::kGuard:
-      return results.has_monte_carlo && results.guard.disagreements > 0;
+      return guards_disagree(results);
     case Warning::kCrowded:
       return results.has_monte_carlo && results.trials.branches.is_crowded;
     case Warning::kTrialsRedrawn:

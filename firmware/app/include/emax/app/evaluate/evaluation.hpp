@@ -147,6 +147,7 @@ class Evaluation {
   void begin_monte_carlo(std::uint32_t trials) noexcept;
   void step_monte_carlo() noexcept;
   void step_guard() noexcept;
+  void end_trials() noexcept;
   bool begin_next_figure() noexcept;
   void begin_figure(Stage stage) noexcept;
   void begin_uncertainty() noexcept;
@@ -155,6 +156,8 @@ class Evaluation {
   void step_figure_bound() noexcept;
   void step_figure_prediction() noexcept;
   void step_figure_trials() noexcept;
+  void step_figure_guard() noexcept;
+  void take_uncertainty(EnergyUncertainty& known) const noexcept;
   void end_figure_energy(bool is_proven) noexcept;
   void begin_figure_trials() noexcept;
   void refuse_figure(Status status) noexcept;

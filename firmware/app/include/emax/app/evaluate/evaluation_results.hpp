@@ -74,6 +74,7 @@ struct EnergyUncertainty {
   CoverageInterval symmetric;  ///< In V^2 s.
   CoverageInterval shortest;
   double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a) over the trials.
+  GuardResults guard;
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
 };
@@ -84,7 +85,7 @@ struct EnergyUncertainty {
 /// beta are drawn. The uncertainty of S itself is a common error of gain and is shown beside it.
 /// With GainMode::kFixed the gain is the number given, and S is drawn too.
 struct FigureResults {
-  /// How many switching times are kept: 64 with the default capacities.
+  /// How many switching times are kept: 32 on a board, 256 on a PC.
   static constexpr std::size_t kTimes = kMaxSwitches / 8;
 
   bool is_done = false;         ///< Looked for, with its bound.

@@ -66,7 +66,7 @@ class EvaluationWorkspace {
     EnergyTrials trials;
     MonteCarlo monte_carlo;
     AdaptiveTrials adaptive;
-    Scatter root;  // Of sqrt(E), while the first pass of an uncertainty runs.
+    Scatter root;  // Of sqrt(E), from the first pass.
   };
   union Part {
     constexpr Part() noexcept : trial() {}
@@ -77,9 +77,9 @@ class EvaluationWorkspace {
     TrialPart trial;
   };
 
-  enum class FigurePhase : std::uint8_t { kSearch, kBound, kPrediction, kTrials, kEnd };
+  enum class FigurePhase : std::uint8_t { kSearch, kBound, kPrediction, kTrials, kGuard, kEnd };
   static_assert(!kHasDefaultCapacities ||
-                sizeof(FigureModel) <= sizeof(double) * packed_size(kPhiCells));
+                sizeof(FigureModel) <= sizeof(double) * kWorkspaceNumbers);
 
   Span<double> store_;
   Span<TrialPiece> pieces_;

@@ -1,0 +1,264 @@
+"""results.json, report and page: fields as their schema says, and figures as calculations that share nothing with the program.
+
+usage: test_results.py PROGRAM DATA_DIRECTORY [unittest arguments]
+"""
+
+import copy
+import html
+import json
+import math
+import pathlib
+import re
+import sys
+from dataclasses import replace
+
+import results_schema
+from program_test import DATA, MODEL, QUICK, ProgramTest, main
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "reference"))
+import reference
+
+PAPER = "1.037,4073,0.3182"
+U_PAPER = (0.003, 6.0, 0.0004)
+LIMIT = 1.037
+TABLE1 = ["--points", DATA / "djb_a1800v.csv"]
+
+
+class Schema(ProgramTest):
+    """Every report of a ProgramTest is held against the schema; here are those of each kind, and the check itself."""
+
+    def made(self, *arguments):
+        """The document, whose faults `run_program()` has looked for."""
+        return json.loads(self.succeed("report", *arguments, "--json"))
+
+    def test_each_criterion_and_method(self):
+        for criterion in ["ise", "difference", "band"]:
+            for method in ["best", "paper"]:
+                for order in ["1", "10"]:
+                    with self.subTest(criterion=criterion, method=method, order=order):
+                        # A delayed filter of order 1 would start with a jump: that figure is refused.
+                        delay = ["--reference-delay", "none"] if (criterion, order) == ("band", "1") else []
+                        found = self.made(*MODEL, *QUICK, "--criterion", criterion, "--method", method, "--order", order,
+                                          "--step", "2e-5", *delay)
+                        self.assertEqual(found["band"]["matched"] is None, order == "1")
+                        self.assertEqual(found["band"]["matched_refused"] is None, order == "10")
+                        self.assertEqual(found["energy"]["criterion"], criterion)
+                        self.assertEqual(found["energy"]["method"], method)
+                        self.assertEqual(found["filter"]["order"], int(order))
+
+    def test_each_source(self):
+        self.assertEqual(self.made("--model", PAPER, "--trend", "none")["monte_carlo"], None)
+        self.assertEqual(self.made(*TABLE1, *QUICK, "--device", "A 1800", "--note", "x")["labels"]["device"], "A 1800")
+        self.assertEqual(self.made(*QUICK)["model"]["source"], "bench")
+        self.assertEqual(self.made(*MODEL, "--trials", "1000", "--distribution", "normal", "--gain", "track",
+                                   "--reference-delay", "2e-5")["monte_carlo"]["distribution"], "normal")
+        self.assertTrue(self.made(*MODEL, "--adaptive", "--trend", "none")["monte_carlo"]["trials"] >= 1000)
+
+    def test_what_points_leave_open(self):
+        tables = DATA / "tables"
+        damping = self.made("--points", tables / "piezo_00.csv", *QUICK, "--time", "0.001")
+        self.assertEqual(damping["fit"]["determined"], "all but beta")
+        resonance = self.made("--points", tables / "handheld_160hz.csv", *QUICK)
+        self.assertEqual((resonance["fit"]["determined"], resonance["model"]["f0"]), ("S", None))
+
+    def test_a_failed_measurement(self):
+        result = self.run_program("report", "--bench-fault", "unplugged-reference@1", "--json", "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        found = json.loads(result.stdout)
+        self.assertEqual((found["model"], found["bench"]["fault"]["name"]), (None, "no reference"))
+
+    def test_the_check_finds_damage(self):
+        good = self.made(*TABLE1, *QUICK)
+        damages = {
+            "results: no band": lambda d: d.pop("band"),
+            "results.band.matched: no delay_s": lambda d: d["band"]["matched"].pop("delay_s"),
+            "results.energy: speed is not in the schema": lambda d: d["energy"].update(speed=1),
+            "results.energy.T: 0 is outside of exclusiveMinimum 0": lambda d: d["energy"].update(T=0),
+            "results.filter.order: 16 is outside of maximum 15": lambda d: d["filter"].update(order=16),
+            "results.filter.order: 4.5 is not of type integer": lambda d: d["filter"].update(order=4.5),
+            "results.energy.criterion: rms is outside of enum": lambda d: d["energy"].update(criterion="rms"),
+            "results.uncertainty.interval: [1] is outside of minItems 2": lambda d: d["uncertainty"].update(interval=[1]),
+            "results.model.covariance[2]": lambda d: d["model"]["covariance"][2].pop(),
+            "results.simulated: None is not of type boolean": lambda d: d.update(simulated=None),
+            "results.warnings[0].text: 3 is not of type string": lambda d: d["warnings"][0].update(text=3),
+        }
+        self.assertEqual(results_schema.faults(good), [])
+        for words, damage in damages.items():
+            with self.subTest(words):
+                bad = copy.deepcopy(good)
+                damage(bad)
+                found = results_schema.faults(bad)
+                self.assertEqual(len(found), 1, found)
+                self.assertIn(words, found[0])
+        self.assertEqual(results_schema.faults_of_text('{"E": NaN}'), ["NaN is no JSON"])
+        with self.assertRaisesRegex(ValueError, "patternProperties"):
+            results_schema.faults({}, {"type": "object", "patternProperties": {}})
+
+    def test_every_field_says_what_it_is(self):
+        rows = list(results_schema.rows(results_schema.SCHEMA))
+        self.assertGreater(len(rows), 120)
+        for name, _, words in rows:
+            self.assertGreater(len(words), 0, name)
+
+    def test_the_readme_has_the_fields(self):
+        readme = (results_schema.DESK / "README.md").read_text(encoding="utf-8")
+        self.assertIn(results_schema.table(), readme, "print it by results_schema.py")
+
+
+def derivatives(system, switches, steps):
+    """dE/dS, dE/df0, dE/dbeta of a signal; at its best switches the times' own changes do not count."""
+    def energy(**change):
+        sensor = replace(system.sensor, **change)
+        return reference.switching_energy(replace(system, sensor=sensor), switches, 2e-3, LIMIT)
+
+    slopes = []
+    for name, step in steps.items():
+        at = getattr(system.sensor, name)
+        slopes.append((energy(**{name: at + step}) - energy(**{name: at - step})) / (2.0 * step))
+    return slopes
+
+
+class FigureValues(ProgramTest):
+    # DESIGN: closed form at refined switches, found twice. S = a = gain = 1.037.
+    def assert_relative(self, value, expected, tolerance, words=""):
+        self.assertAlmostEqual(value / expected, 1.0, delta=tolerance, msg=words)
+
+    def test_energies_and_switches(self):
+        cases = [
+            # order, T, in band, delay taken out; to the digits that are published
+            ("10", "0.002", 7.66114200e-6, 3.30567639e-7),
+            ("10", "0.010", 1.61813435e-4, 1.09936666e-5),
+            ("4", "0.002", 2.02966723e-5, 1.49396682e-6),
+        ]
+        for order, time, band, matched in cases:
+            with self.subTest(order=order, time=time):
+                found = self.json_of("--model", PAPER, "--order", order, "--time", time, "--trend", "none")["band"]
+                self.assertGreater(found["E"], band * (1 - 1e-8))
+                self.assertGreater(found["matched"]["E"], matched * (1 - 1e-8))
+                self.assert_relative(found["E"], band, 1e-8)
+                self.assert_relative(found["matched"]["E"], matched, 1e-8)
+                for figure in [found, found["matched"]]:
+                    self.assertGreater(figure["bound"], figure["E"])
+                    self.assert_relative(figure["rms"], math.sqrt(figure["E"] / float(time)), 1e-15)
+                    self.assert_relative(figure["rms_percent"], 100 * figure["rms"] / (1.037 * LIMIT), 1e-14)
+                    self.assertEqual(figure["switches"], len(figure["switch_times"]))
+                if time == "0.002" and order == "10":
+                    self.assertEqual([round(t, 9) for t in found["switch_times"]], [0.000639919])
+                    for t, known in zip(found["matched"]["switch_times"], [0.365145378e-3, 0.946493860e-3]):
+                        # A third switch near the end moves these two by less than this.
+                        self.assertAlmostEqual(t, known, delta=2e-9)
+                if time == "0.010":
+                    self.assertEqual((found["switches"], found["matched"]["switches"]), (16, 18))
+
+    def test_percents_of_sensors(self):
+        # DESIGN, the table of section 2: order 10, 1 kHz, T = 2 ms; to half of the last digit.
+        table = {
+            PAPER: ((148.7, 0.05), (5.755, 5e-4), (1.196, 5e-4)),
+            "1,8000,0.7": ((146.3, 0.05), (6.007, 5e-4), (0.0176, 5e-5)),
+            "1,30000,0.7": ((147.7, 0.05), (1.608, 5e-4), (0.00059, 5e-6)),
+            "1,4073,0.7": (None, (11.75, 5e-3), (0.13, 5e-3)),
+            "1,4073,0.01": (None, (1.65, 5e-3), (1.62, 5e-3)),
+            "1,2000,0.7": (None, (23.6, 0.05), (1.01, 5e-3)),
+            "1,2000,0.3": (None, (13.1, 0.05), (5.18, 5e-3)),
+        }
+        for model, (paper, band, matched) in table.items():
+            with self.subTest(model):
+                found = self.json_of("--model", model, "--trend", "none")
+                S, a = found["model"]["S"], found["energy"]["a"]
+                percents = [100 * found["energy"]["rms"] / (S * a), found["band"]["rms_percent"],
+                            found["band"]["matched"]["rms_percent"]]
+                for value, expected in zip(percents, (paper, band, matched)):
+                    if expected is not None:
+                        self.assertAlmostEqual(value, expected[0], delta=1.0001 * expected[1])
+
+    def test_ideal_sensor(self):
+        found = self.json_of("--model", PAPER, "--trend", "none")["ideal"]
+        self.assert_relative(found["E"], 5.080404e-3, 1e-7)
+        self.assertAlmostEqual(found["rms_percent"], 148.21, delta=0.005)
+        longer = self.json_of("--model", PAPER, "--trend", "none", "--time", "0.01")["ideal"]
+        self.assertAlmostEqual(longer["rms_percent"], 179.34, delta=0.005)
+        # Ever faster switching: the whole signal is left, 100 % of S a.
+        first = self.json_of("--model", PAPER, "--trend", "none", "--order", "1")["ideal"]
+        self.assert_relative(first["rms_percent"], 100.0, 1e-12)
+        band = self.json_of("--model", PAPER, "--trend", "none", "--criterion", "band")["ideal"]
+        self.assertEqual((band["E"], band["rms_percent"]), (0, 0))
+
+    def test_uncertainties_are_those_of_the_derivatives(self):
+        # u of a figure that is nearly linear in the parameters: the root of the sum of (dE/dp u(p))^2, by quadrature.
+        # 20000 trials know a standard deviation to 0.5 %, and an end of the interval to 0.02 u; curvature adds less.
+        found = self.json_of("--model", PAPER + ",0.003,6,0.0004", "--trials", "20000", "--trend", "none")
+        sensor = reference.Accelerometer(1.037, 4073.0, 0.3182)
+        energy = reference.System(sensor, 10, 1000.0, 1.037)
+        steps = {"S": 1e-4, "f0": 1.0, "beta": 1e-4}
+        slopes = derivatives(energy, found["energy"]["switch_times"], steps)
+        u = math.hypot(*(slope * standard for slope, standard in zip(slopes, U_PAPER)))
+        known = found["uncertainty"]
+        self.assert_relative(known["u"], u, 0.025)
+        self.assertAlmostEqual(known["U"], 2 * known["u"], delta=1e-12 * u)
+        self.assertAlmostEqual(known["interval"][0], found["energy"]["E"] - 1.96 * u, delta=0.1 * u)
+        self.assertAlmostEqual(known["interval"][1], found["energy"]["E"] + 1.96 * u, delta=0.1 * u)
+        self.assertEqual((known["redrawn"], known["disagreements"]), (0, 0))
+        # A uniform box has a third of the variance.
+        self.assert_relative(found["monte_carlo"]["u"], u / math.sqrt(3.0), 0.025)
+        del steps["S"]
+        for figure, delay in [(found["band"], 0.0), (found["band"]["matched"], 0.3182 / (math.pi * 4073.0))]:
+            system = reference.System(sensor, 10, 1000.0, 1.037, "band", delay)
+            slopes = derivatives(system, figure["switch_times"], steps)
+            u = math.hypot(*(slope * standard for slope, standard in zip(slopes, U_PAPER[1:])))
+            with self.subTest(delay=delay):
+                self.assert_relative(figure["u"], u, 0.025)
+                self.assert_relative(figure["u_percent"], 0.5 * figure["rms_percent"] * u / figure["E"], 0.03)
+                self.assertAlmostEqual(figure["interval"][0], figure["E"] - 1.96 * u, delta=0.1 * u)
+                self.assertEqual(figure["U_percent"], 2 * figure["u_percent"])
+                self.assertEqual(figure["disagreements"], 0)
+
+    def test_normal_trials_are_made_once(self):
+        found = self.json_of(*MODEL, "--trials", "5000", "--trend", "none", "--distribution", "normal")
+        box = self.json_of(*MODEL, "--trials", "5000", "--trend", "none")
+        for name in ["u", "interval", "shortest"]:
+            self.assertEqual(found["uncertainty"][name], found["monte_carlo"][name])
+            self.assertEqual(found["uncertainty"][name], box["uncertainty"][name])
+        self.assertNotEqual(found["monte_carlo"]["u"], box["monte_carlo"]["u"])
+        text = [self.succeed("report", *MODEL, "--trials", "5000", "--trend", "none", *more) for more in
+                ([], ["--distribution", "normal"])]
+        # The paper's figure with its U, too, which comes of the roots of the trials' energies.
+        rows = [re.search(r"The paper's figure.*", words).group() for words in text]
+        self.assertEqual(rows[0], rows[1])
+
+
+class FigureWords(ProgramTest):
+    def test_report_and_page(self):
+        text = self.succeed("report", "--model", PAPER + ",0.003,6,0.0004", "--trials", "20000", "--out", "out")
+        page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
+        page = re.sub(r"<[^>]*>", "|", page)
+        # DESIGN: 1.196, 5.755, 148.7 and an ideal sensor's 148.2; U and bounds are looked at elsewhere.
+        rows = [
+            (r"  In band, constant delay taken out +1\.196 +0\.01\d +1\.\d+\n", "constant delay taken out (U, k = 2)",
+             r"1\.196 % ± 0\.01\d %"),
+            (r"  In band, with its delay +5\.755 +0\.02\d +5\.\d+\n", "Worst in-band error, with its delay",
+             r"5\.755 % ± 0\.02\d %"),
+            (r"  The paper's figure, sqrt\(E/T\) +148\.7\d +0\.\d\d +15\d\.\d\n", "The paper's figure, √(E/T)",
+             r"148\.7\d % ± 0\.\d\d % of S.a; an ideal sensor: 148\.2 %"),
+        ]
+        for line, name, value in rows:
+            with self.subTest(name):
+                self.assertRegex(text, line)
+                self.assertRegex(page, re.escape(name) + r"\|+" + value)
+        self.assertRegex(text, r"  The same of an ideal sensor, K = S +148\.2 +- +-\n")
+        places = [text.index(row) for row in ("In band, constant delay", "In band, with its", "The paper's figure",
+                                              "WHAT WAS PUT IN", "IN-BAND ERROR", "UNCERTAINTY OF E", "MONTE CARLO OF")]
+        self.assertEqual(places, sorted(places), "the figures lead")
+        in_band = text[text.index("IN-BAND ERROR"):text.index("UNCERTAINTY OF E")]
+        for words in ["7.66114200e-06 V^2 s", "+a from the start, 1 switch, at (ms)\n                               0.639919",
+                      "= 5.755 % of S a", "3.30567639e-07 V^2 s", "0.365145   0.946494", "= 1.196 % of S a",
+                      # beta/(pi f0) = 24.868 us
+                      "24.868 us, beta/(pi f0), the sensor's at low frequency", "u(S)/S = 0.289 %"]:
+            self.assertIn(words, in_band)
+        # DESIGN: u(E) is about 1.1e-5 over the box, and root 3 times that of normal parameters.
+        self.assertRegex(text[text.index("UNCERTAINTY OF E"):text.index("MONTE CARLO OF")],
+                         r"u\(E\) +1\.[89]\de?-?\d*[ e]")
+        self.assertRegex(text, r"Std deviation over box +1\.1e-05 V\^2 s|Std deviation over box +1\.1\de-05")
+
+
+if __name__ == "__main__":
+    main()
