@@ -83,7 +83,9 @@ class CertificateOfInterruptedRuns(ProgramTest):
             self.assertEqual(self.prove("10").returncode, 0)
             self.assertEqual(sorted(os.listdir(self.directory / "out")), [".emax.proof.notes", "proof"])
             result = self.prove("4", **shim(**{setting: number}))
-            self.assertEqual(self.proven_order(), 4 if result.returncode == 0 else 10, number)
+            # Killed behind the last call that matters, it has its new name already.
+            whole = {0: [4], -signal.SIGKILL: [10, 4]}.get(result.returncode, [10])
+            self.assertIn(self.proven_order(), whole, number)
             if result.returncode == 0:
                 return number
             self.assertIn(result.returncode, codes, result.stderr)
