@@ -1,6 +1,7 @@
 // How the columns of a table become numbers in Hz, V/(m/s^2) and rad.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -47,7 +48,7 @@ class Conversions final {
  private:
   static constexpr std::size_t kRoles = static_cast<std::size_t>(Role::kPhaseUncertainty) + 1;
 
-  Conversion all_[kRoles];
+  std::array<Conversion, kRoles> all_;
 };
 
 /// Sets them from the header and the options. Refused are units that are not known or that the
