@@ -127,6 +127,9 @@ bool Processor::on_block(std::uint32_t address, std::uint32_t bytes) {
   instructions_ += instructions;
   cycles_ += instructions;
   events_.pass(cycle_ * instructions);
+  if (bytes == 2 && is_endless(address)) {
+    spin();
+  }
   if (last_left_ != 0 && !nvic_.anything_active()) {
     last_left_ = again_ = 0;
   }
@@ -134,6 +137,23 @@ bool Processor::on_block(std::uint32_t address, std::uint32_t bytes) {
     watch_floating_point();
   }
   return true;
+}
+
+bool Processor::is_endless(std::uint32_t address) {
+  constexpr std::uint8_t kBranchToItself[] = {0xFE, 0xE7};
+  const std::uint8_t* code = bus_.memory(address, 2);
+  return code != nullptr && std::equal(code, code + 2, kBranchToItself);
+}
+
+// Nothing changes before something is due: all turns until then at once.
+void Processor::spin() {
+  const Time next = std::min(events_.next(), until_);
+  if (next != kNever && next > events_.now()) {
+    const Time turns = (next - events_.now() + cycle_ - 1) / cycle_;
+    instructions_ += turns;
+    cycles_ += turns;
+    events_.pass(turns * cycle_);
+  }
 }
 
 // The emulator's unit is always on: a program that forgot to switch it on would never know.

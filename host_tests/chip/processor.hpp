@@ -70,6 +70,8 @@ class Processor final : private EngineClient {
   ExceptionMasks masks() const;
   std::uint32_t count(std::uint32_t address, std::uint32_t bytes);
   bool must_stop();
+  bool is_endless(std::uint32_t address);
+  void spin();
   Halt sleep(Time until);
   void take_pending();
   void enter(unsigned exception);
