@@ -76,6 +76,10 @@ bool Engine::protect(std::uint32_t address, std::uint32_t permissions) {
   return false;
 }
 
+void Engine::forget_code() {
+  check(uc_ctl(engine_.get(), UC_CTL_WRITE(UC_CTL_TB_FLUSH, 0)), "uc_ctl");
+}
+
 std::uint32_t Engine::get(int register_id) const {
   std::uint32_t value = 0;
   check(uc_reg_read(engine_.get(), register_id, &value), "uc_reg_read");

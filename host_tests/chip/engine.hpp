@@ -53,6 +53,9 @@ class Engine {
   /// @returns False where no memory is.
   bool protect(std::uint32_t address, std::uint32_t permissions);
 
+  /// Reads all code anew, after somebody has changed it from outside. Not while the engine runs.
+  void forget_code();
+
   std::uint32_t get(int register_id) const;
   void set(int register_id, std::uint32_t value);
   double get_double(int register_id) const;

@@ -1,5 +1,6 @@
 // What the model believes of libunicorn, point by point: another version may differ.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -37,6 +38,10 @@ class Emulator final : private EngineClient {
   EngineStop run(unsigned most, std::uint32_t from = kCode) {
     blocks_left_ = most;
     return engine.run(from);
+  }
+
+  void change(std::size_t index, std::uint16_t code) {
+    std::memcpy(flash_.data() + 2 * index, &code, 2);
   }
 
   std::vector<std::uint32_t> blocks;
@@ -217,6 +222,15 @@ TEST(Emulator, ProtectedMemoryFaults) {
   ASSERT_TRUE(emulator.engine.protect(kRam, UC_PROT_ALL));
   EXPECT_EQ(emulator.run(1), EngineStop::kBlock);
   EXPECT_FALSE(emulator.engine.protect(0x60000000, UC_PROT_NONE));
+}
+
+TEST(Emulator, CodeThatIsChangedFromOutsideIsReadAnewWhenAsked) {
+  Emulator emulator({0x2001, 0xE7FE});  // movs r0, #1; b .
+  EXPECT_EQ(emulator.run(1), EngineStop::kBlock);
+  emulator.change(0, 0x2002);
+  emulator.engine.forget_code();
+  EXPECT_EQ(emulator.run(1), EngineStop::kBlock);
+  EXPECT_EQ(emulator.engine.get(UC_ARM_REG_R0), 2U);
 }
 
 TEST(Emulator, AnUndefinedInstructionIsTold) {
