@@ -112,8 +112,18 @@ class InstrumentSweeps(ProgramTest):
 
     def test_by_socket_with_other_settings(self) -> None:
         self.expect_the_same(TcpInstrument, ["--bench-seed", "7", "--bench-truth", "0.5,3000,0.4"],
-                             ["--level", "2", "--cycles", "4", "--settle", "0.02", "--acceleration-limit", "30",
+                             ["--level", "2", "--cycles", "4", "--settle", "0.02", "--acceleration-limit", "30", "--drive-limit", "4",
                               "--order", "7", "--time", "0.003"])
+
+    def test_by_socket_with_another_chain(self) -> None:
+        """What sets a conditioner with its uncertainty, a table, and a level above the limit of before."""
+        options = ["--level", "25", "--acceleration-limit", "40", "--device-gain", "1,0.3", "--reference-table", "10,0.1,9000,0.1",
+                   "--mounting-uncertainty", "0.3", "--correction-skew", "1.25e-6,1e-8"]
+        # The bench is made by these options, too; a limit of its own, so that the order of the settings matters.
+        bench = [*options[4:], "--level", "1", "--acceleration-limit", "20"]
+        with TcpInstrument(*bench) as remote:
+            got = self.succeed("report", "--instrument", remote.port, *options, *QUICK, "--json")
+        self.assertEqual(got, self.succeed("report", *options, *QUICK, "--json"))
 
     def test_by_serial_line(self) -> None:
         self.expect_the_same(SerialInstrument, ["--bench-seed", "3"], [])

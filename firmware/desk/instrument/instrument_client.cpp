@@ -2,6 +2,7 @@
 #include "desk/instrument/instrument_client.hpp"
 
 #include <cstdlib>
+#include <iterator>
 
 #include "emax/app/settings/sweep_settings_rows.hpp"
 
@@ -181,6 +182,45 @@ Problem InstrumentClient::set(const std::string& command, const std::string& opt
                    printable(error));
 }
 
+Problem InstrumentClient::set_reference(const app::ReferenceCalibration& reference,
+                                        const app::ReferenceCalibration& defaults) {
+  if (reference.count > 1) {
+    std::string table;
+    for (std::size_t i = 0; i < reference.count; ++i) {
+      table += (i > 0 ? "," : "") + number_text(reference.frequency_hz[i]) + "," +
+               number_text(reference.sensitivity[i]);
+    }
+    if (Problem problem = set(":SENS:REF:TABL " + table, "--reference-table")) {
+      return problem;
+    }
+  }
+  const bool is_same_value =
+      reference.count > 1 || (reference.sensitivity[0] == defaults.sensitivity[0]);
+  if (is_same_value && reference.expanded_percent == defaults.expanded_percent) {
+    return {};
+  }
+  if (reference.count > 1) {
+    return bad_input("--reference-uncertainty: no command sets it beside a table; leave it out");
+  }
+  return set(":SENS:REF:SENS " + number_text(reference.sensitivity[0]) + "," +
+                 number_text(reference.expanded_percent),
+             "--reference-uncertainty");
+}
+
+// A row, with the next one where that is its uncertainty.
+Problem InstrumentClient::set_row(const app::SettingRow& row, const app::SettingRow* uncertainty,
+                                  const app::SweepSettings& sweep) {
+  const std::string option = std::string("--") + row.option.name;
+  if (row.command.header == nullptr) {
+    return bad_input(option + ": no command sets it at an instrument; leave it out");
+  }
+  std::string command = header_of(row) + " " + number_text(number_in(row.field, &sweep));
+  if (uncertainty != nullptr) {
+    command += "," + number_text(number_in(uncertainty->field, &sweep));
+  }
+  return set(command, option);
+}
+
 Problem InstrumentClient::set_up(const app::SweepSettings& sweep) {
   const app::SweepSettings defaults = app::default_sweep_settings();
   if (Problem problem = set("*RST;*CLS", "--instrument")) {
@@ -192,25 +232,20 @@ Problem InstrumentClient::set_up(const app::SweepSettings& sweep) {
       return problem;
     }
   }
-  const app::ReferenceCalibration& reference = sweep.reference;
-  if (reference.sensitivity[0] != defaults.reference.sensitivity[0] ||
-      reference.expanded_percent != defaults.reference.expanded_percent) {
-    if (Problem problem = set(":SENS:REF:SENS " + number_text(reference.sensitivity[0]) + "," +
-                                  number_text(reference.expanded_percent),
-                              "--reference-uncertainty")) {
-      return problem;
-    }
+  if (Problem problem = set_reference(sweep.reference, defaults.reference)) {
+    return problem;
   }
-  for (const app::SettingRow& row : app::kSweepSettingRows) {
-    if (row.option.name == nullptr || is_list(row.field) || is_same(row.field, &sweep, &defaults)) {
+  // From the last to the first: a limit is set before the level that it must not be below.
+  for (std::size_t i = std::size(app::kSweepSettingRows); i-- > 0;) {
+    const app::SettingRow& row = app::kSweepSettingRows[i];
+    if (row.option.name == nullptr || is_list(row.field)) {
       continue;
     }
-    const std::string option = std::string("--") + row.option.name;
-    if (row.command.header == nullptr) {
-      return bad_input(option + ": no command sets it at an instrument; leave it out");
-    }
-    if (Problem problem =
-            set(header_of(row) + " " + number_text(number_in(row.field, &sweep)), option)) {
+    const app::SettingRow* const next =
+        row.command.next_unit != nullptr ? &app::kSweepSettingRows[i + 1] : nullptr;
+    const bool is_set = !is_same(row.field, &sweep, &defaults) ||
+                        (next != nullptr && !is_same(next->field, &sweep, &defaults));
+    if (Problem problem = is_set ? set_row(row, next, sweep) : Problem{}) {
       return problem;
     }
   }

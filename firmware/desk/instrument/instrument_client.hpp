@@ -5,6 +5,8 @@
 
 #include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/settings/setting_row.hpp"
+#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/hal/analog_stream.hpp"
 
 #include "desk/cli/console_progress.hpp"
@@ -45,6 +47,10 @@ class InstrumentClient final {
 
   Problem greet();
   Problem set(const std::string& command, const std::string& option);
+  Problem set_reference(const app::ReferenceCalibration& reference,
+                        const app::ReferenceCalibration& defaults);
+  Problem set_row(const app::SettingRow& row, const app::SettingRow* uncertainty,
+                  const app::SweepSettings& sweep);
   Problem ask(const std::string& query, std::string& line);
   Problem ask_block(const std::string& query, std::string& content);
   Problem read_line(std::string& line);
