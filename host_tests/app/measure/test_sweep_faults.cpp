@@ -1,12 +1,15 @@
 // Every fault of the bench's script at several times: named, the drive at zero in time, and what
 // was measured before it kept.
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <string>
 
+#include "emax/app/measure/sweep.hpp"
 #include "emax/app/measure/sweep_results.hpp"
+#include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "app/sweep_run.hpp"
@@ -15,9 +18,12 @@ namespace {
 
 using emax::Status;
 using emax::app::default_sweep_settings;
+using emax::app::Sweep;
 using emax::app::SweepPoint;
+using emax::app::SweepResults;
 using emax::app::SweepSettings;
 using emax::app::SweepStage;
+using emax::app::SweepWorkspace;
 using emax::sim::BenchSettings;
 using emax::sim::FaultKind;
 using emax::test::response_of;
@@ -91,6 +97,138 @@ INSTANTIATE_TEST_SUITE_P(All, SweepFaults, testing::ValuesIn(kFaults), [](const 
   }
   return name;
 });
+
+/// What a single fault may be called.
+bool is_name_of(FaultKind fault, Status status) {
+  for (const Expectation& one : kFaults) {
+    if (one.fault == fault && one.status == status) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A sweep near the limit of acceleration, with these faults; what the shaker has done is recorded
+/// by the bench, whatever the sensors tell.
+void run_near_the_limit(std::uint64_t seed, const emax::sim::Fault& one,
+                        const emax::sim::Fault& other) {
+  BenchSettings settings;
+  settings.seed = seed;
+  settings.fault = one;
+  settings.second_fault = other;
+  SCOPED_TRACE(std::string(emax::sim::name_of(one.kind)) + "@" + std::to_string(one.at_frame) +
+               " " + emax::sim::name_of(other.kind) + "@" + std::to_string(other.at_frame) +
+               " seed " + std::to_string(seed));
+  SweepSettings sweep = default_sweep_settings();
+  sweep.level_mps2 = 1.8;
+  sweep.acceleration_limit_mps2 = 2.0;
+  sweep.drive_limit_v = 10.0;
+  sweep.slew_v_per_s = 4e5;
+  SweepRun run(settings);
+  run.to_end(sweep);
+  EXPECT_LE(run.bench.peak_mps2(), 1.1 * 2.0);
+  EXPECT_TRUE(run.bench.drive_is_at_zero());
+  EXPECT_EQ(run.sweep.stage, SweepStage::kFailed);
+  if (other.kind == FaultKind::kNone) {
+    EXPECT_TRUE(is_name_of(one.kind, run.sweep.status)) << emax::explain(run.sweep.status);
+  }
+}
+
+/// A fixed sequence that depends on no library: x -> 6364136223846793005 x + 1442695040888963407.
+class Times {
+ public:
+  std::uint64_t next() {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    return (state_ >> 33U) % 570000U;
+  }
+
+ private:
+  std::uint64_t state_ = 2024;
+};
+
+TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration) {
+  Times times;
+  for (const Expectation& one : kFaults) {
+    for (int i = 0; i < 20; ++i) {
+      const std::uint64_t seed = times.next();
+      run_near_the_limit(seed, {one.fault, times.next()}, {});
+    }
+  }
+}
+
+TEST(SweepFaults, AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration) {
+  Times times;
+  for (const Expectation& one : kFaults) {
+    for (const Expectation& other : kFaults) {
+      for (int i = 0; i < 20 && one.fault < other.fault; ++i) {
+        const std::uint64_t seed = times.next();
+        const std::uint64_t first = times.next();
+        run_near_the_limit(seed, {one.fault, first}, {other.fault, times.next()});
+      }
+    }
+  }
+}
+
+TEST(SweepFaults, AReferenceThatDiesWhileItIsReadRaisesNothing) {
+  // Died at a moment where it once let the drive rise to 4.8 times the limit.
+  BenchSettings bench;
+  bench.seed = 98587;
+  bench.fault = {FaultKind::kUnpluggedReference, 132095};
+  SweepSettings settings = default_sweep_settings();
+  settings.acceleration_limit_mps2 = 2.0;
+  settings.drive_limit_v = 10.0;
+  SweepRun run(bench);
+  run.to_end(settings);
+  EXPECT_EQ(run.sweep.status, Status::kNoReference);
+  EXPECT_LE(run.bench.peak_mps2(), 2.0);
+}
+
+// A twentieth of its gain from the third point on: to keep the level, twenty times the drive would
+// be needed, and the device sees that the shaker has not changed.
+class FadingReference final : public emax::hal::AnalogStream {
+ public:
+  FadingReference() noexcept : AnalogStream({1e5, 10.0, 10.0, 64, 0}) {}
+  void fade() noexcept { divisor_ = 80; }
+  double largest_v() const noexcept { return 10.0 / 2147483648.0 * largest_; }
+
+ private:
+  Status do_start() noexcept override { return Status::kOk; }
+  emax::hal::Exchange do_exchange(emax::Span<const emax::hal::Word> drive,
+                                  emax::Span<emax::hal::Frame> response) noexcept override {
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      response[i] = {drive[i] / divisor_, drive[i] / 4};
+      largest_ = std::max(largest_, std::abs(static_cast<double>(drive[i])));
+    }
+    frames_ += drive.size();
+    return {Status::kOk, frames_ - drive.size()};
+  }
+  std::uint32_t do_ramp_to_zero(emax::hal::Word) noexcept override { return 256; }
+  void do_stop() noexcept override {}
+  bool do_drive_is_at_zero() const noexcept override { return true; }
+
+  std::uint64_t frames_ = 0;
+  std::int32_t divisor_ = 4;
+  double largest_ = 0.0;
+};
+
+TEST(SweepFaults, ADeviceThatSeesMoreThanTheReferenceCounts) {
+  FadingReference stream;
+  static SweepResults results;
+  static SweepWorkspace work;
+  Sweep sweep(results, work, stream);
+  SweepSettings settings = default_sweep_settings();
+  settings.level_mps2 = 0.25;  // 0.25 V at the reference, 1 V of drive.
+  ASSERT_EQ(sweep.start(settings), Status::kOk);
+  while (!sweep.done()) {
+    if (results.point_count == 3) {
+      stream.fade();
+    }
+    sweep.step();
+  }
+  EXPECT_NE(results.status, Status::kOk);
+  EXPECT_EQ(results.points().size(), 3U);
+  EXPECT_LT(stream.largest_v(), 1.1);
+}
 
 TEST(SweepFaults, GainThatWasSetWrong) {
   // Ten times off: far from what the data sheet says.

@@ -19,6 +19,8 @@ constexpr double kLooseShare = 0.01;     // Repeats that differ by more are take
 constexpr double kDistortedShare = 0.1;  // An error above,
 constexpr double kFlaggedShare = 0.03;   // flagged above.
 constexpr double kOffsetShare = 0.02;    // Of full scale, against the silence.
+constexpr double kTurnedRound = 0.9;     // Cosine of the angle to half a turn,
+constexpr double kFlatWithin = 1.2;      // and the largest factor to the check's ratio.
 constexpr double kLargestJump = 8.0;     // Of the ratio, from one frequency to the next.
 
 // A device of second order never leads. Sensors with a high pass do, by less than a degree where
@@ -51,6 +53,8 @@ struct Sweep::Reading {
   double weak_v = 0.0;  // Below this it may be noise.
   bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
   bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
+  // The phase is good to 0.15 degrees.
+  bool is_clear() const noexcept { return fit.amplitude_v > 50.0 * weak_v; }
 };
 
 double Sweep::acceleration_of(double reference_v) const noexcept {
@@ -165,6 +169,18 @@ double Sweep::room_mps2(double reference_v, double device_v) const noexcept {
 // More drive, because the reference reads less than the level. It may read less because it has just
 // died, or because its gain has changed: the limit of acceleration depends on it.
 bool Sweep::may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept {
+  // At the first look a device that is saturated at the level would look like another fault.
+  const bool is_judged = results_.stage != SweepStage::kCheckBefore;
+  const double of_device =
+      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v,
+                    device.fit.amplitude_v, static_cast<double>(work_.target_.repeat_frames));
+  if (is_judged && reference.is_clear() && device.is_clear() && of_device <= kFlaggedShare) {
+    const Status status = plausibility_of(ratio_of(reference.fit.phasor(), device.fit.phasor()));
+    if (status != Status::kOk) {
+      suspect(status);
+      return false;
+    }
+  }
   const double drive_v = work_.drive_.amplitude_v();
   const double samples = static_cast<double>(work_.target_.repeat_frames);
   const double distortion =
@@ -271,10 +287,10 @@ double Sweep::ratio_factor() const noexcept {
          (results_.settings.device_gain * results_.settings.ratio_correction);
 }
 
-Complex Sweep::ratio_of(const PointScatter& scatter) const noexcept {
+Complex Sweep::ratio_of(Complex reference, Complex device) const noexcept {
   // Sampled later, the device's channel is ahead by w skew.
   const SinCos skew = sincos(kTwoPi * work_.target_.frequency_hz * results_.settings.skew_s);
-  return ratio_factor() * ((scatter.device / scatter.reference) * Complex{skew.cos, -skew.sin});
+  return ratio_factor() * ((device / reference) * Complex{skew.cos, -skew.sin});
 }
 
 void Sweep::end_target() noexcept {
@@ -288,7 +304,7 @@ void Sweep::end_target() noexcept {
   const double repeats = static_cast<double>(work_.repeats_.count);
   scatter.reference_rest_v = sqrt(work_.reference_rest2_ / repeats);
   scatter.device_rest_v = sqrt(work_.device_rest2_ / repeats);
-  const Complex ratio = ratio_of(scatter);
+  const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
   const Status status = plausibility_of(ratio);
   if (status != Status::kOk) {
@@ -305,6 +321,21 @@ void Sweep::end_target() noexcept {
     results_.check_after = ratio;
   }
   begin_next();
+}
+
+// Half a turn between neighbours, both as large as at the check frequency: a resonance between them
+// would have made one of them larger, unless they are far apart.
+bool Sweep::has_turned_round(Complex ratio, Complex before) const noexcept {
+  const double flat = magnitude(results_.check_before);
+  const std::size_t count = results_.point_count;
+  // The check frequency is far below the resonance, as the first one mostly is.
+  const double before_hz =
+      count > 0 ? results_.settings.frequency_hz[count - 1] : work_.target_.frequency_hz;
+  const double along = ratio.re * before.re + ratio.im * before.im;
+  return along < -kTurnedRound * magnitude(ratio) * magnitude(before) &&
+         !is_beyond(magnitude(ratio) / flat, kFlatWithin) &&
+         !is_beyond(magnitude(before) / flat, kFlatWithin) &&
+         !is_beyond(work_.target_.frequency_hz / before_hz, kPlausibleFactor);
 }
 
 Status Sweep::plausibility_of(Complex ratio) const noexcept {
@@ -328,6 +359,9 @@ Status Sweep::plausibility_of(Complex ratio) const noexcept {
   }
   const double to_expected = magnitude(ratio - expected);
   if (!is_check && magnitude(ratio - swapped) < 0.4 * to_expected) {
+    return cables_of(ratio, expected, swapped);
+  }
+  if (!is_check && has_turned_round(ratio, expected)) {
     return cables_of(ratio, expected, swapped);
   }
   const double phase = atan2(ratio.im, ratio.re);

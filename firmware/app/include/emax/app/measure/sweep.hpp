@@ -100,6 +100,7 @@ class Sweep {
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
   void end_target() noexcept;
+  bool has_turned_round(Complex ratio, Complex before) const noexcept;
   Status plausibility_of(Complex ratio) const noexcept;
   void store_point(const PointScatter& scatter, Complex ratio) noexcept;
   void begin_next() noexcept;
@@ -108,7 +109,7 @@ class Sweep {
   double acceleration_of(double reference_v) const noexcept;
   double aim_mps2() const noexcept;
   double ratio_factor() const noexcept;
-  Complex ratio_of(const PointScatter& scatter) const noexcept;
+  Complex ratio_of(Complex reference, Complex device) const noexcept;
 
   SweepResults& results_;
   SweepWorkspace& work_;
