@@ -3,6 +3,7 @@
 
 #include "emax/base/distributions.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax {
 namespace {
@@ -87,6 +88,25 @@ Status FrequencyResponse::set_common(Span<const double> relative_u) noexcept {
     common_[i] = relative_u[i];
   }
   return Status::kOk;
+}
+
+Status FrequencyResponse::set_shared(const SharedEffects& shared) noexcept {
+  const double all[] = {shared.skew_s, shared.clock,     shared.drift,     shared.images,
+                        shared.leak,   shared.leak_back, shared.linearity, shared.corner_hz};
+  for (const double u : all) {
+    if (!(u >= 0.0) || !is_finite(u)) {
+      return Status::kInvalidArgument;
+    }
+  }
+  shared_ = shared;
+  return Status::kOk;
+}
+
+Complex shared_at(const SharedEffects& shared, double frequency_hz, double place,
+                  double of_highest) noexcept {
+  const double drift = shared.drift * (place - 0.5);
+  const double images = shared.images * of_highest * of_highest;
+  return {sqrt(drift * drift + images * images), kTwoPi * frequency_hz * shared.skew_s};
 }
 
 bool FrequencyResponse::has_common() const noexcept {

@@ -417,12 +417,119 @@ bool Wlsp::fill_estimates() noexcept {
       fit_.covariance[i][j] = t[i][0] * t[j][0] + t[i][1] * t[j][1] + t[i][2] * t[j][2];
     }
   }
+  add_shared(fit_.covariance);
   fit_.u_sensitivity = sqrt(fit_.covariance[0][0]);
   fit_.u_natural_frequency_hz = sqrt(fit_.covariance[1][1]);
   fit_.u_damping = sqrt(fit_.covariance[2][2]);
   const double uncertainties[3] = {fit_.u_sensitivity, fit_.u_natural_frequency_hz, fit_.u_damping};
   return is_finite(fit_.model.sensitivity) && is_finite(f0_hz) && is_finite(beta) &&
          all_finite(uncertainties);
+}
+
+// In the time of the sweep, from 0 to 1: the middle of a point.
+double Wlsp::place_of(std::size_t index) const noexcept {
+  const Span<const ResponsePoint> points = response_.points();
+  double before = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double time = time_of(points[i].frequency_hz, response_.shared().corner_hz);
+    before += i < index ? time : 0.0;
+    before += i == index ? 0.5 * time : 0.0;
+    all += time;
+  }
+  return before / all;
+}
+
+// Of 1/K of the fit at a point, by the effect in the size of its uncertainty. An error of the
+// amplitude changes 1/K by as much of it, one of the phase turns it.
+Complex Wlsp::change_of(Effect effect, std::size_t index, double largest) const noexcept {
+  const SharedEffects& shared = response_.shared();
+  const ResponsePoint& point = response_.points()[index];
+  const double w = point.frequency_hz / max_frequency_hz_;
+  const Complex y = {scaled_[0] - w * w * scaled_[2], 2.0 * w * scaled_[1]};
+  const double share = point.amplitude / largest;
+  const double angle = kTwoPi * point.frequency_hz * shared.skew_s;
+  switch (effect) {
+    case Effect::kSkew:
+      return {y.im * angle, -y.re * angle};
+    case Effect::kDrift:
+      return -shared.drift * (place_of(index) - 0.5) * y;
+    case Effect::kImages:
+      return -shared.images * w * w * y;
+    case Effect::kLeak:
+      return -shared.leak * (y * y);
+    case Effect::kLeakBack:
+      return {shared.leak_back, 0.0};
+    case Effect::kLinearity:
+      return -shared.linearity * share * share * y;
+  }
+  return {};
+}
+
+// Adds what a change of 1/K at a point is in the normal equations, whose right-hand side is A^T z
+// for the whitened change z, without the common part's share of it.
+void Wlsp::add_to(NormalStep& step, std::size_t index, Complex change) const noexcept {
+  const Complex z = whiten(index, change);
+  const Columns a = whitened_columns(index);
+  for (std::size_t k = 0; k < 3; ++k) {
+    step.x[k] += a.column[k].re * z.re + a.column[k].im * z.im;
+  }
+  if (has_common_) {
+    const Complex c = whitened_common(index);
+    step.common_z += c.re * z.re + c.im * z.im;
+    for (std::size_t k = 0; k < 3; ++k) {
+      step.columns_common[k] += a.column[k].re * c.re + a.column[k].im * c.im;
+    }
+  }
+}
+
+// x becomes the change of the scaled mu.
+void Wlsp::solve_step(NormalStep& step) const noexcept {
+  if (has_common_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      step.x[k] -= step.columns_common[k] * (step.common_z / common_squares_);
+    }
+  }
+  solve_transposed(r_, step.x);
+  solve_upper(r_, step.x);
+}
+
+// What the change makes of the estimates, with the weights of the fit: one step of its normal
+// equations.
+void Wlsp::add_effect(Effect effect, double largest, double (&covariance)[3][3]) const noexcept {
+  NormalStep step;
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    add_to(step, i, change_of(effect, i, largest));
+  }
+  solve_step(step);
+  const double* x = step.x;
+  const double d0 = x[0] / scaled_[0];
+  const double d2 = x[2] / scaled_[2];
+  const double d[3] = {-d0 / scaled_[0],
+                       0.5 * max_frequency_hz_ * sqrt(scaled_[0] / scaled_[2]) * (d0 - d2),
+                       (x[1] - 0.5 * scaled_[1] * (d0 + d2)) / sqrt(scaled_[0] * scaled_[2])};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      covariance[i][j] += d[i] * d[j];
+    }
+  }
+}
+
+void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
+  const SharedEffects& shared = response_.shared();
+  double largest = 0.0;
+  for (const ResponsePoint& point : response_.points()) {
+    largest = point.amplitude > largest ? point.amplitude : largest;
+  }
+  const double sizes[] = {shared.skew_s, shared.drift,     shared.images,
+                          shared.leak,   shared.leak_back, shared.linearity};
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (sizes[k] > 0.0) {
+      add_effect(static_cast<Effect>(k), largest, covariance);
+    }
+  }
+  const double f0_u = max_frequency_hz_ * sqrt(abs(scaled_[0] / scaled_[2])) * shared.clock;
+  covariance[1][1] += f0_u * f0_u;
 }
 
 Complex Wlsp::whiten(std::size_t index, Complex value) const noexcept {
@@ -499,6 +606,7 @@ Status WlspDraws::start(const Wlsp& fit, std::uint32_t draws,
     return Status::kInvalidArgument;
   }
   *this = WlspDraws();
+  fit.add_shared(shared_);
   generator_ = generator;
   wanted_ = draws;
   const Accelerometer& model = fit.result().model;
@@ -527,11 +635,9 @@ void WlspDraws::step(const Wlsp& fit, std::uint32_t count) noexcept {
 }
 
 bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
-  // The right-hand side A^T z of the normal equations for the difference from the measured values:
-  // small numbers, so that solving with R^T R loses nothing that matters.
-  double x[3] = {};
-  double columns_common[3] = {};  // A^T c and c^T z, for the common part's share of the weights.
-  double common_z = 0.0;
+  // For the difference from the measured values: small numbers, so that solving with R^T R loses
+  // nothing that matters.
+  Wlsp::NormalStep step;
   bool possible = true;
   double together = 0.0;
   if (fit.has_common_) {
@@ -554,26 +660,10 @@ bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
                          // the sequence.
       continue;
     }
-    const Complex z = fit.whiten(i, inverse_response(drawn) - inverse_response(measured));
-    const Wlsp::Columns a = fit.whitened_columns(i);
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] += a.column[k].re * z.re + a.column[k].im * z.im;
-    }
-    if (fit.has_common_) {
-      const Complex c = fit.whitened_common(i);
-      common_z += c.re * z.re + c.im * z.im;
-      for (std::size_t k = 0; k < 3; ++k) {
-        columns_common[k] += a.column[k].re * c.re + a.column[k].im * c.im;
-      }
-    }
+    fit.add_to(step, i, inverse_response(drawn) - inverse_response(measured));
   }
-  if (fit.has_common_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] -= columns_common[k] * (common_z / fit.common_squares_);
-    }
-  }
-  solve_transposed(fit.r_, x);
-  solve_upper(fit.r_, x);
+  fit.solve_step(step);
+  const double* x = step.x;
   const double scaled[3] = {fit.scaled_[0] + x[0], fit.scaled_[1] + x[1], fit.scaled_[2] + x[2]};
   if (!possible || !(scaled[0] > 0.0) || !(scaled[2] > 0.0) || !all_finite(scaled)) {
     return false;
@@ -598,7 +688,8 @@ WlspDrawsResult WlspDraws::result() const noexcept {
       continue;
     }
     for (std::size_t j = 0; j < 3; ++j) {
-      result.covariance[i][j] = (products_[i][j] - sum_[i] * sum_[j] / n) / (n - 1.0);
+      result.covariance[i][j] =
+          (products_[i][j] - sum_[i] * sum_[j] / n) / (n - 1.0) + shared_[i][j];
     }
   }
   return result;

@@ -70,6 +70,10 @@ void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& option
       emax::sqrt(sweep.reference_gain_expanded_percent * sweep.reference_gain_expanded_percent +
                  sweep.device_gain_expanded_percent * sweep.device_gain_expanded_percent);
   bench.mounting_expanded_percent = sweep.mounting_expanded_percent;
+  bench.skew_expanded_s = sweep.skew_expanded_s;
+  bench.clock_expanded_ppm = sweep.clock_expanded_ppm;
+  bench.crosstalk_expanded_percent = sweep.crosstalk_expanded_percent;
+  bench.linearity_expanded_percent = sweep.linearity_expanded_percent;
   if (is_given(all, "bench-truth") && !is_given(all, "device-sensitivity")) {
     sweep.expected_sensitivity = bench.device.sensitivity;
   }

@@ -131,7 +131,8 @@ Frame SimBench::advance(Word word) noexcept {
   };
   pipeline_[slot(clock)] = word;
   const Word at_dac = pipeline_[slot(clock - format().latency_frames)];
-  for (const Fault& fault : {settings().fault, settings().second_fault}) {
+  const std::array<Fault, 2> faults = {settings().fault, settings().second_fault};
+  for (const Fault& fault : faults) {
     stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
   }
   const BenchVolts volts = bench_.step(drive_v(at_dac));

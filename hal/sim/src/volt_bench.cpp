@@ -24,19 +24,24 @@ constexpr double kTwoTo64 = 18446744073709551616.0;
 constexpr double kTwoToMinus53 = 1.1102230246251565e-16;
 constexpr double kMaxPercent = 100.0;
 constexpr double kMaxHarmonic = 0.1;
+constexpr std::uint64_t kChannels = 0x14057B7EF767814FU;
+constexpr double kMaxClock_ppm = 1e4;
 /// Half of an expanded uncertainty in percent, as a fraction.
 constexpr double kStandardPerExpandedPercent = 0.005;
 /// Every so many frames what moves slowly is computed anew, so that no error of rounding adds up.
 constexpr std::uint64_t kRefreshFrames = 64;
 
-bool positive(double x) noexcept { return x > 0.0 && is_finite(x); }
+[[gnu::noinline]] bool positive(double x) noexcept { return x > 0.0 && is_finite(x); }
 
-bool not_negative(double x) noexcept { return x >= 0.0 && is_finite(x); }
+[[gnu::noinline]] bool not_negative(double x) noexcept { return x >= 0.0 && is_finite(x); }
 
-bool percent(double x) noexcept { return x >= 0.0 && x <= kMaxPercent; }
+[[gnu::noinline]] bool percent(double x) noexcept { return x >= 0.0 && x <= kMaxPercent; }
 
 bool uncertainties_ok(const BenchSettings& settings) noexcept {
-  return percent(settings.reference_expanded_percent) && percent(settings.drift_expanded_percent) &&
+  return not_negative(settings.skew_expanded_s) && percent(settings.crosstalk_expanded_percent) &&
+         percent(settings.linearity_expanded_percent) && settings.clock_expanded_ppm >= 0.0 &&
+         settings.clock_expanded_ppm <= kMaxClock_ppm &&
+         percent(settings.reference_expanded_percent) && percent(settings.drift_expanded_percent) &&
          percent(settings.gain_expanded_percent) && percent(settings.mounting_expanded_percent);
 }
 
@@ -48,6 +53,30 @@ bool electronics_ok(const BenchSettings& settings, double sample_rate_hz) noexce
          settings.hum_hz <= 0.5 * sample_rate_hz && settings.second_harmonic >= 0.0 &&
          settings.second_harmonic <= kMaxHarmonic && settings.third_harmonic >= 0.0 &&
          settings.third_harmonic <= kMaxHarmonic;
+}
+
+/// What the plant is built with, drawn apart so that the other draws stay what they are.
+struct Times {
+  double clock_factor = 1.0;
+  double skew_s = 0.0;
+};
+
+Times draw_times(const BenchSettings& settings) noexcept {
+  constexpr double kStandardPerPpm = 0.5e-6;
+  constexpr std::uint64_t kApart = 0x5851F42D4C957F2DU;
+  Noise noise;
+  noise.seed(settings.seed ^ kApart);
+  const double clock = noise.normal();
+  const double skew = noise.normal();
+  return {1.0 + kStandardPerPpm * settings.clock_expanded_ppm * clock,
+          settings.skew_s + 0.5 * settings.skew_expanded_s * skew};
+}
+
+/// The gain changes with the square of the voltage. A sine of amplitude A in x^3 has 3 A^3/4 at its
+/// own frequency.
+double bent_v(double volts, double linearity) noexcept {
+  constexpr double kPerSquare = 4.0 / 3.0 / (kLinearScale_v * kLinearScale_v);
+  return volts * (1.0 + kPerSquare * linearity * (volts * volts));
 }
 
 bool equal(const char* a, const char* b) noexcept {
@@ -81,8 +110,9 @@ Status VoltBench::configure(const BenchSettings& settings, double sample_rate_hz
       static_cast<std::size_t>(settings.second_fault.kind) >= kFaultKinds) {
     return Status::kInvalidArgument;
   }
-  const Status status =
-      plant_.configure(settings.device, settings.shaker, 1.0 / sample_rate_hz, settings.skew_s);
+  const Times times = draw_times(settings);
+  const Status status = plant_.configure(settings.device, settings.shaker,
+                                         1.0 / (sample_rate_hz * times.clock_factor), times.skew_s);
   if (status != Status::kOk) {
     return status;
   }
@@ -120,6 +150,9 @@ void VoltBench::draw() noexcept {
   truth_.reference_drift = kStandard * settings_.drift_expanded_percent * drift;
   truth_.gain_factor = 1.0 + kStandard * settings_.gain_expanded_percent * gain;
   truth_.mounting_factor = 1.0 + kStandard * settings_.mounting_expanded_percent * mounting;
+  const Times times = draw_times(settings_);
+  truth_.clock_factor = times.clock_factor;
+  truth_.skew_s = times.skew_s;
   truth_.reference_offset_v = settings_.offset_v * reference_offset;
   truth_.device_offset_v = settings_.offset_v * device_offset;
   const double device_factor = truth_.gain_factor * truth_.mounting_factor;
@@ -132,6 +165,13 @@ void VoltBench::draw() noexcept {
   device_.scale = settings_.device_gain * device_factor;
   device_.offset_v = truth_.device_offset_v;
   device_.hum_phase_rad = kTwoPi * kTwoToMinus53 * static_cast<double>(noise_.bits() >> 11U);
+  // The noise goes on from here whatever comes behind it, so these have a sequence of their own.
+  Noise channels;
+  channels.seed(settings_.seed ^ kChannels);
+  truth_.into_reference = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
+  truth_.into_device = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
+  truth_.reference_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
+  truth_.device_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
 }
 
 BenchVolts VoltBench::step(double drive_v) noexcept {
@@ -141,19 +181,24 @@ BenchVolts VoltBench::step(double drive_v) noexcept {
   if (clock_ % kRefreshFrames == 0) {
     refresh();
   }
-  for (const Fault& fault : {settings_.fault, settings_.second_fault}) {
-    if (clock_ == fault.at_frame) {
-      break_down(fault.kind);
-    }
+  if (clock_ == settings_.fault.at_frame) {
+    break_down(settings_.fault.kind);
+  }
+  if (clock_ == settings_.second_fault.at_frame) {
+    break_down(settings_.second_fault.kind);
   }
   device_.offset_v += offset_climb_v_;
   const PlantOutput sensed = plant_.step(distorted_v(drive_v));
   const double size = abs(sensed.acceleration_mps2);
   peak_mps2_ = size > peak_mps2_ ? size : peak_mps2_;
   const NoisePair noise = noise_.pair();
-  const BenchVolts volts = {
+  const BenchVolts clean = {
       conditioned_v(reference_, sensed.acceleration_mps2 * drift_factor_, noise.first),
       conditioned_v(device_, sensed.device_v, noise.second)};
+  const BenchVolts volts = {
+      bent_v(clean.reference_v, truth_.reference_linearity) +
+          truth_.into_reference * clean.device_v,
+      bent_v(clean.device_v, truth_.device_linearity) + truth_.into_device * clean.reference_v};
   ++clock_;
   return swapped_ ? BenchVolts{volts.device_v, volts.reference_v} : volts;
 }

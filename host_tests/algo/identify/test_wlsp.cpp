@@ -871,4 +871,93 @@ TEST(WlspDraws, StartRefuses) {
   EXPECT_TRUE(draws.done());
 }
 
+// What one shared effect does to exact points: K times `factor`, or its inverse plus `inverse`.
+struct SharedCase {
+  const char* name;
+  emax::SharedEffects shared;
+  std::complex<double> (*changed)(std::complex<double> k, double frequency_hz, double place);
+};
+
+constexpr double kEffect = 1e-5;
+
+// The changes of the estimates by a second fit of changed points, not by the formula.
+TEST(Wlsp, SharedEffectsAreCarriedToTheParameters) {
+  using Value = std::complex<double>;
+  const SharedCase cases[] = {
+      {"skew",
+       {kEffect * 1e-3, 0, 0, 0, 0, 0, 0, 0},
+       [](Value k, double f, double) {
+         return k * std::polar(1.0, 2.0 * kPi * f * kEffect * 1e-3);
+       }},
+      {"drift",
+       {0, 0, kEffect, 0, 0, 0, 0, 0},
+       [](Value k, double, double place) { return k * (1.0 + kEffect * (place - 0.5)); }},
+      {"images",
+       {0, 0, 0, 0, kEffect, 0, 0, 0},
+       [](Value k, double f, double) { return k * (1.0 + kEffect * f * f / 36e6); }},
+      {"leak", {0, 0, 0, 0, 0, kEffect, 0, 0}, [](Value k, double, double) { return k + kEffect; }},
+      {"leak back",
+       {0, 0, 0, 0, 0, 0, kEffect, 0},
+       [](Value k, double, double) { return 1.0 / (1.0 / k + kEffect); }},
+  };
+  for (const SharedCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    FrequencyResponse plain;
+    FrequencyResponse changed;
+    constexpr int kPoints = 30;
+    for (int i = 0; i < kPoints; ++i) {
+      const double frequency_hz = 200.0 * (i + 1);
+      ResponsePoint point = exact_point(kDevice, frequency_hz, 1e-4, 1e-4);
+      ASSERT_EQ(plain.add(point), Status::kOk);
+      const Value k = one.changed(std::polar(point.amplitude, point.phase_rad), frequency_hz,
+                                  (i + 0.5) / kPoints);
+      point.amplitude = std::abs(k);
+      point.phase_rad = std::arg(k);
+      ASSERT_EQ(changed.add(point), Status::kOk);
+    }
+    static Wlsp fit;
+    ASSERT_EQ(fit.fit(plain), Status::kOk);
+    const WlspFit before = fit.result();
+    ASSERT_EQ(fit.fit(changed), Status::kOk);
+    const Accelerometer& model = fit.result().model;
+    const double d[3] = {model.sensitivity - before.model.sensitivity,
+                         model.natural_frequency_hz - before.model.natural_frequency_hz,
+                         model.damping - before.model.damping};
+    const double parameters[3] = {1.037, 4073.0, 0.3182};
+    ASSERT_EQ(plain.set_shared(one.shared), Status::kOk);
+    ASSERT_EQ(fit.fit(plain), Status::kOk);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double added = fit.result().covariance[i][j] - before.covariance[i][j];
+        // Second order in the effect: 1e-6 of the parameter.
+        const double second =
+            1e-6 * (parameters[i] * std::fabs(d[j]) + parameters[j] * std::fabs(d[i]));
+        EXPECT_NEAR(added, d[i] * d[j], 2e-3 * std::fabs(d[i] * d[j]) + second) << i << " " << j;
+      }
+    }
+    EXPECT_EQ(fit.result().model.damping, before.model.damping) << "they weigh nothing";
+  }
+}
+
+TEST(Wlsp, TheClockIsAnErrorOfTheFrequencyAlone) {
+  FrequencyResponse response;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_EQ(response.add(exact_point(kDevice, 200.0 * (i + 1), 1e-4, 1e-4)), Status::kOk);
+  }
+  static Wlsp fit;
+  ASSERT_EQ(fit.fit(response), Status::kOk);
+  const WlspFit before = fit.result();
+  emax::SharedEffects shared;
+  shared.clock = 25e-6;
+  ASSERT_EQ(response.set_shared(shared), Status::kOk);
+  ASSERT_EQ(fit.fit(response), Status::kOk);
+  EXPECT_EQ(fit.result().u_sensitivity, before.u_sensitivity);
+  EXPECT_EQ(fit.result().u_damping, before.u_damping);
+  EXPECT_NEAR(fit.result().u_natural_frequency_hz,
+              std::hypot(before.u_natural_frequency_hz, 4073.0 * 25e-6), 1e-9);
+  shared.clock = -1.0;
+  EXPECT_EQ(response.set_shared(shared), Status::kInvalidArgument);
+  EXPECT_EQ(response.shared().clock, 25e-6);
+}
+
 }  // namespace

@@ -231,7 +231,7 @@ TEST(SweepBudget, UncertaintyIsThatOfTheFit) {
   const double expected = std::sqrt(2.0 / 5000.0) * std::hypot(5e-3 / 2.0, 2e-3 / 1.0);
   EXPECT_FALSE(verdict.scatters);
   EXPECT_NEAR(verdict.relative_u / expected, 1.0, 0.01);  // The phasors scatter a little.
-  EXPECT_EQ(verdict.budget.phase_rad, verdict.relative_u);
+  EXPECT_EQ(verdict.budget.quantisation, 0.0);  // Ideal converters.
 
   // Hum at the frequency: half of its square on each component.
   inputs.silent_device.hum_v[0] = 1e-3;
@@ -246,13 +246,21 @@ TEST(SweepBudget, UncertaintyIsThatOfTheFit) {
   EXPECT_TRUE(verdict.scatters);
   EXPECT_GT(verdict.relative_u, 1.5 * expected);
 
-  // Steps of the converters are the least.
+  // Without noise, a drive of 100 frames is rounded alike in every period and every repeat.
   inputs = BudgetInputs();
   inputs.sample_rate_hz = 1e5;
   inputs.device_step_v = 0.1;
   const ChannelNoise none = {0.0, 0.1 / std::sqrt(12.0), 300};
   verdict = emax::app::point_verdict(p, 1000.0, none, inputs);
-  EXPECT_NEAR(verdict.relative_u, std::sqrt(2.0 / 5000.0) * 0.1 / std::sqrt(12.0), 1e-5);
+  const double rounding = 0.1 / std::sqrt(12.0);
+  EXPECT_NEAR(verdict.budget.quantisation, std::sqrt(2.0 / 100.0) * rounding, 1e-5);
+  EXPECT_NEAR(verdict.budget.noise, std::sqrt(2.0 / 5000.0) * rounding, 1e-5);
+  EXPECT_NEAR(verdict.relative_u, std::hypot(verdict.budget.noise, verdict.budget.quantisation),
+              1e-15);
+  // Noise of half a step leaves exp(-pi^2/2) of it.
+  const ChannelNoise half = {0.0, std::hypot(rounding, 0.05), 300};
+  verdict = emax::app::point_verdict(p, 1000.0, half, inputs);
+  EXPECT_NEAR(verdict.budget.quantisation, std::sqrt(2.0 / 100.0) * rounding * 0.0071919, 1e-6);
 }
 
 TEST(SweepBudget, OneInAThousandScattersByChance) {

@@ -39,8 +39,37 @@ constexpr bool is_phase_known(const ResponsePoint& point) noexcept {
 /// * kUncertaintyNotPositive: An uncertainty of zero or less.
 Status validate(const ResponsePoint& point) noexcept;
 
-/// Up to kMaxPoints points in ascending order of frequency, and one effect that is common to all of
-/// them. 3080 bytes.
+/// Standard uncertainties of effects that every point feels in its own way, by one cause each.
+///
+/// No scatter between points shows them, and the model takes most of each for a change of its
+/// parameters. The fit does not weight with them: it carries each to the parameters and adds that
+/// to their covariance.
+struct SharedEffects {
+  double skew_s = 0.0;     ///< Of the device's channel: a phase of w skew.
+  double clock = 0.0;      ///< Of all frequencies, relative.
+  double drift = 0.0;      ///< Of the amplitude from the first point to the last, relative.
+  double corner_hz = 0.0;  ///< Below it a point takes longer, as 1/f: for the time of the drift.
+  double images = 0.0;     ///< Of the amplitude at the highest frequency, relative, as f^2.
+  double leak = 0.0;       ///< Reference seen in the device's channel: of K, in V/(m/s^2).
+  double leak_back = 0.0;  ///< Device seen in the reference's: of 1/K, in (m/s^2)/V.
+  double linearity = 0.0;  ///< Of the largest amplitude A, relative, as A^2.
+};
+
+/// @returns The time that a point takes, where those above the corner take 1.
+constexpr double time_of(double frequency_hz, double corner_hz) noexcept {
+  return frequency_hz < corner_hz ? corner_hz / frequency_hz : 1.0;
+}
+
+/// @returns What drift, images and skew, each of the size of its uncertainty, change at a point:
+/// relative amplitude (re) and phase in rad (im).
+///
+/// @param[in] place      In the time of the sweep, from 0 to 1.
+/// @param[in] of_highest Frequency over the highest one.
+Complex shared_at(const SharedEffects& shared, double frequency_hz, double place,
+                  double of_highest) noexcept;
+
+/// Up to kMaxPoints points in ascending order of frequency, one effect that is common to all of
+/// them, and those that are shared in other ways. 3144 bytes.
 ///
 /// The uncertainties of a point are those of its own effects, independent of every other point. An
 /// effect that moves all amplitudes together (the reference's sensitivity, the gains, the mounting)
@@ -79,7 +108,14 @@ class FrequencyResponse {
     }
   }
 
-  void clear() noexcept { count_ = 0; }
+  /// @returns kOk, or kInvalidArgument for one that is negative or not a number.
+  Status set_shared(const SharedEffects& shared) noexcept;
+  const SharedEffects& shared() const noexcept { return shared_; }
+
+  void clear() noexcept {
+    count_ = 0;
+    shared_ = SharedEffects();
+  }
 
   Span<const ResponsePoint> points() const noexcept {
     return Span<const ResponsePoint>(points_, count_);
@@ -95,6 +131,7 @@ class FrequencyResponse {
   ResponsePoint points_[kMaxPoints] = {};
   double common_[kMaxPoints] = {};
   std::size_t count_ = 0;
+  SharedEffects shared_;
 };
 
 static_assert(std::is_trivially_copyable_v<FrequencyResponse>);

@@ -143,6 +143,19 @@ class Wlsp {
   Complex whitened_common(std::size_t index) const noexcept;
   double common_effect_of(const double (&scaled)[3]) const noexcept;
   bool fill_estimates() noexcept;
+  enum class Effect : std::uint8_t { kSkew, kDrift, kImages, kLeak, kLeakBack, kLinearity };
+  /// One step of the normal equations: A^T z, and c^T z and A^T c for the common vector c.
+  struct NormalStep {
+    double x[3] = {};
+    double columns_common[3] = {};
+    double common_z = 0.0;
+  };
+  void add_to(NormalStep& step, std::size_t index, Complex change) const noexcept;
+  void solve_step(NormalStep& step) const noexcept;
+  double place_of(std::size_t index) const noexcept;
+  Complex change_of(Effect effect, std::size_t index, double largest) const noexcept;
+  void add_effect(Effect effect, double largest, double (&covariance)[3][3]) const noexcept;
+  void add_shared(double (&covariance)[3][3]) const noexcept;
   Complex whiten(std::size_t index, Complex value) const noexcept;
   Columns whitened_columns(std::size_t index) const noexcept;
   Complex whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept;
@@ -187,7 +200,10 @@ struct WlspDrawsResult {
 /// The estimates stay those of `Wlsp::fit()`. The mean of the draws is shown to be compared with
 /// them, never to replace them: it carries the bias of the draws on top of the measurement's.
 ///
-/// 152 bytes; keeps no reference to the fit. Sums are taken about the fit's estimates, so
+/// Effects that are shared in other ways are not drawn: what the formula of the fit gives for them
+/// is added.
+///
+/// 224 bytes; keeps no reference to the fit. Sums are taken about the fit's estimates, so
 /// nothing cancels.
 class WlspDraws {
  public:
@@ -224,6 +240,7 @@ class WlspDraws {
   double estimate_[3] = {};
   double sum_[3] = {};
   double products_[3][3] = {};
+  double shared_[3][3] = {};  // Covariance of the shared effects, which are not drawn.
 };
 
 static_assert(std::is_trivially_copyable_v<WlspDraws>);

@@ -19,6 +19,9 @@ constexpr NumberRule kFrequency = {0.1, 1e9, kNoDefault, scpi::kHertz};
 constexpr auto kCommands = setting_commands<count_commands(kSettingRows)>(kSettingRows);
 constexpr auto kSweepCommands =
     setting_commands<count_commands(kSweepSettingRows)>(kSweepSettingRows);
+constexpr auto kNarrowed = narrowed_limits<count_narrowed(kSettingRows)>(kSettingRows);
+constexpr auto kSweepNarrowed =
+    narrowed_limits<count_narrowed(kSweepSettingRows)>(kSweepSettingRows);
 
 /// A new value: a number, a byte, or both.
 struct SettingValue {
@@ -30,10 +33,16 @@ struct SettingValue {
 // the stack while text becomes a number, which takes most of it.
 class SettingCall {
  public:
-  /// @param[in] current The structure with the value that is set.
+  /// @param[in] narrowed The limits of the commands that are narrower than their fields.
+  /// @param[in] current  The structure with the value that is set.
   SettingCall(scpi::Call& call, const SettingCommand& command, const SettingField& field,
-              const void* current) noexcept
-      : call_(call), command_(command), field_(field), current_(current) {}
+              const SettingLimits* narrowed, const void* current) noexcept
+      : call_(call),
+        command_(command),
+        field_(field),
+        limits_(command.narrowed > 0 ? narrowed[command.narrowed - 1]
+                                     : SettingLimits{field.min, field.max}),
+        current_(current) {}
 
   /// @returns True if there is a new value. A query is answered.
   bool take(double by_default, SettingValue& value) noexcept {
@@ -59,13 +68,13 @@ class SettingCall {
 
  private:
   NumberRule rule(double by_default) const noexcept {
-    return {command_.min, command_.max, by_default, command_.unit};
+    return {limits_.min, limits_.max, by_default, command_.unit};
   }
   scpi::Words words() const noexcept { return {command_.words, command_.word_count}; }
 
   bool take_whole(double by_default, double& value) noexcept {
-    const IntegerRule rule = {static_cast<std::int64_t>(command_.min),
-                              static_cast<std::int64_t>(command_.max),
+    const IntegerRule rule = {static_cast<std::int64_t>(limits_.min),
+                              static_cast<std::int64_t>(limits_.max),
                               static_cast<std::int64_t>(by_default)};
     std::int64_t number = 0;
     if (!call_.integer_setting(rule, static_cast<std::int64_t>(value), number)) {
@@ -112,6 +121,7 @@ class SettingCall {
   scpi::Call& call_;
   const SettingCommand& command_;
   const SettingField& field_;
+  SettingLimits limits_;
   const void* current_;
 };
 
@@ -217,7 +227,7 @@ void InstrumentCommands::setting(Instrument& i, Call& call, std::size_t index) n
     return;
   }
   SettingValue value;
-  if (!SettingCall(call, command, field, &i.settings())
+  if (!SettingCall(call, command, field, kNarrowed.data(), &i.settings())
            .take(number_in(field, &kDefaultSettings), value)) {
     return;
   }
@@ -238,7 +248,7 @@ void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t in
   // MINimum and others are asked of the value alone.
   const bool answers_both = has_two && call.is_query() && !call.has_more();
   SettingValue value;
-  if (!SettingCall(call, command, *field, &i.sweep_settings())
+  if (!SettingCall(call, command, *field, kSweepNarrowed.data(), &i.sweep_settings())
            .take(default_number(i, *field), value)) {
     if (answers_both) {
       call.answer().number(uncertainty);

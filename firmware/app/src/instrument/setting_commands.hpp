@@ -17,14 +17,50 @@ namespace emax::app {
 
 /// What the handler of a setting's command goes by.
 struct SettingCommand {
-  double min = 0.0;
-  double max = 0.0;
   const char* unit = nullptr;
   const char* next_unit = nullptr;  ///< As in `CommandText`.
   const char* const* words = nullptr;
   std::uint8_t word_count = 0;
   std::uint8_t field = 0;  ///< Its place among the fields of its structure.
+  /// Where the console is narrower than the field: the place of its limits, from 1.
+  std::uint8_t narrowed = 0;
 };
+
+/// Least and greatest value.
+struct SettingLimits {
+  double min = 0.0;
+  double max = 0.0;
+};
+
+constexpr bool is_narrowed(const SettingRow& row) noexcept {
+  return row.command.header != nullptr &&
+         (row.command.min != row.field.min || row.command.max != row.field.max);
+}
+
+template <std::size_t kRows>
+constexpr std::size_t count_narrowed(const SettingRow (&rows)[kRows]) noexcept {
+  std::size_t count = 0;
+  for (const SettingRow& row : rows) {
+    count += is_narrowed(row) ? 1U : 0U;
+  }
+  return count;
+}
+
+/// The limits of the rows whose console is narrower, in their order.
+template <std::size_t kCount, std::size_t kRows>
+constexpr std::array<SettingLimits, kCount> narrowed_limits(
+    const SettingRow (&rows)[kRows]) noexcept {
+  std::array<SettingLimits, kCount> limits;
+  std::size_t count = 0;
+  for (const SettingRow& row : rows) {
+    if (is_narrowed(row)) {
+      limits[count].min = row.command.min;
+      limits[count].max = row.command.max;
+      ++count;
+    }
+  }
+  return limits;
+}
 
 template <std::size_t kRows>
 constexpr std::size_t count_commands(const SettingRow (&rows)[kRows]) noexcept {
@@ -41,12 +77,13 @@ constexpr std::array<SettingCommand, kCommands> setting_commands(
     const SettingRow (&rows)[kRows]) noexcept {
   std::array<SettingCommand, kCommands> commands;
   std::size_t count = 0;
+  std::uint8_t narrowed = 0;
   for (std::size_t i = 0; i < kRows; ++i) {
     const CommandText& text = rows[i].command;
     if (text.header != nullptr) {
       SettingCommand& command = commands[count++];
-      command.min = text.min;
-      command.max = text.max;
+      narrowed = static_cast<std::uint8_t>(narrowed + (is_narrowed(rows[i]) ? 1 : 0));
+      command.narrowed = is_narrowed(rows[i]) ? narrowed : std::uint8_t{0};
       command.unit = text.unit;
       command.next_unit = text.next_unit;
       command.words = rows[i].words;

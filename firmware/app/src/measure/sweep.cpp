@@ -71,6 +71,7 @@ void Sweep::reset() noexcept {
   results_.inputs = BudgetInputs();
   results_.common = CommonBudget();
   results_.noise = ChannelNoise();
+  results_.shared = SharedEffects();
   results_.check_before = Complex();
   results_.check_after = Complex();
   results_.failed_frequency_hz = 0.0;
@@ -335,11 +336,48 @@ void Sweep::finish() noexcept {
     const PointVerdict verdict =
         point_verdict(work.scatter_[i], point.point.frequency_hz, results.noise, inputs);
     point.budget = verdict.budget;
-    point.residual_percent = verdict.residual_percent;
+    point.residual_percent = static_cast<float>(verdict.residual_percent);
     point.flagged = point.flagged || verdict.scatters;
     point.scatters = verdict.scatters;
     point.point.u_amplitude = verdict.relative_u * point.point.amplitude;
-    point.point.u_phase_rad = verdict.budget.phase_rad;
+    point.point.u_phase_rad = verdict.relative_u;
+  }
+  if (count > 0) {
+    share_effects(has_checks ? sqrt(after / before) - 1.0 : 0.0);
+  }
+}
+
+// What no scatter shows, in the parameters and, so that chi-square can be judged, in the points.
+void Sweep::share_effects(double check_change) noexcept {
+  SweepResults& results = results_;
+  const std::size_t count = results.point_count;
+  double device2 = 0.0;
+  double time = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    device2 = std::max(device2, norm(work_.scatter_[i].device));
+  }
+  const double check_u =
+      point_verdict(work_.check_scatter_, results.settings.check_hz, results.noise, results.inputs)
+          .relative_u;
+  const double squares = check_change * check_change - check_u * check_u;
+  const double highest_hz = results.table[count - 1].point.frequency_hz;
+  results.shared = shared_effects(results.settings, work_.format_.sample_rate_hz,
+                                  squares > 0.0 ? sqrt(squares) : 0.0, ratio_factor(), highest_hz,
+                                  sqrt(device2) / work_.scales_.device_v);
+  for (std::size_t i = 0; i < count; ++i) {
+    time += time_of(results.table[i].point.frequency_hz, results.shared.corner_hz);
+  }
+  double passed = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    ResponsePoint& point = results.table[i].point;
+    const double own = time_of(point.frequency_hz, results.shared.corner_hz);
+    const Complex at = shared_at(results.shared, point.frequency_hz, (passed + 0.5 * own) / time,
+                                 point.frequency_hz / highest_hz);
+    passed += own;
+    const double u = point.u_amplitude / point.amplitude;
+    results.table[i].budget.shared = at.re;
+    point.u_amplitude = sqrt(u * u + at.re * at.re) * point.amplitude;
+    point.u_phase_rad = sqrt(u * u + at.im * at.im);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "emax/app/measure/sweep_budget.hpp"
 
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -13,11 +14,12 @@ constexpr double kHumShare = 0.05;
 constexpr std::uint32_t kFewDof = 30;
 constexpr double kNormalQuantile = 3.0902323061678132;  // 0.1 % lie beyond.
 
-double larger(double a, double b) noexcept { return a > b ? a : b; }
-double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
+[[gnu::noinline]] double larger(double a, double b) noexcept { return a > b ? a : b; }
+// Out of line, for its size.
+[[gnu::noinline]] double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
 
 // Re(a conj(b)).
-double projected(Complex a, Complex b) noexcept { return a.re * b.re + a.im * b.im; }
+[[gnu::noinline]] double projected(Complex a, Complex b) noexcept { return a.re * b.re + a.im * b.im; }
 
 // The value of chi-square over its degrees of freedom that chance exceeds once in 1000 (Wilson,
 // Hilferty 1931).
@@ -28,13 +30,22 @@ double chi_square_limit(double dof) noexcept {
 }
 
 // Variance of a component of the ratio, relative, of a fit over so many samples.
-double ratio_variance(const PointScatter& p, double reference_v, double device_v,
-                      double samples) noexcept {
+[[gnu::noinline]] double ratio_variance(const PointScatter& p, double reference_v, double device_v,
+                                        double samples) noexcept {
   return 2.0 / samples *
          (reference_v * reference_v / norm(p.reference) + device_v * device_v / norm(p.device));
 }
 
-double relative_hum(const PointScatter& p, double frequency_hz, double samples,
+// The standard deviation of a converter's rounding error that noise does not turn into noise: the
+// mean error over normal noise of standard deviation s is a sine over a step, of (step/pi)
+// exp(-2 (pi s/step)^2), for the first and largest of its harmonics.
+[[gnu::noinline]] double rounding_v(double step_v, double pooled_v) noexcept {
+  const double noise2 = pooled_v * pooled_v - step_v * step_v / 12.0;
+  const double steps2 = noise2 > 0.0 ? noise2 / (step_v * step_v) : 0.0;
+  return step_v > 0.0 ? step_v / kSqrt12 * exp(-2.0 * kPi * kPi * steps2) : 0.0;
+}
+
+[[gnu::noinline]] double relative_hum(const PointScatter& p, double frequency_hz, double samples,
                     const BudgetInputs& inputs) noexcept {
   const double duration_s = samples / inputs.sample_rate_hz;
   return length(
@@ -109,8 +120,13 @@ PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
       pooled + hum_in_repeats * hum_in_repeats / static_cast<double>(scatter.repeats);
   verdict.scatters = own > explained * chi_square_limit(dof);
   budget.noise = sqrt(verdict.scatters ? own : pooled);
-  budget.quantisation = sqrt(ratio_variance(scatter, inputs.reference_step_v / kSqrt12,
-                                            inputs.device_step_v / kSqrt12, samples));
+  // Repeats of a drive that repeats itself are rounded alike: they take no part in the mean, nor do
+  // periods, and only noise makes the steps of a converter small.
+  const double period = inputs.sample_rate_hz / frequency_hz;
+  const double different = period < scatter.repeat_samples ? period : scatter.repeat_samples;
+  budget.quantisation =
+      sqrt(ratio_variance(scatter, rounding_v(inputs.reference_step_v, noise.reference_v),
+                          rounding_v(inputs.device_step_v, noise.device_v), different));
   budget.hum = relative_hum(scatter, frequency_hz, samples, inputs);
   const double reference_v = sqrt(norm(scatter.reference));
   const double device_v = sqrt(norm(scatter.device));
@@ -121,8 +137,7 @@ PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
   // repeat misses them.
   budget.distortion = distortion * 0.5 / scatter.repeat_samples / kSqrt3;
   verdict.relative_u =
-      length(length(larger(budget.noise, budget.quantisation), budget.hum), budget.distortion);
-  budget.phase_rad = verdict.relative_u;
+      length(length(length(budget.noise, budget.quantisation), budget.hum), budget.distortion);
   verdict.residual_percent =
       100.0 * larger(scatter.reference_rest_v / reference_v, scatter.device_rest_v / device_v);
   return verdict;
@@ -140,6 +155,28 @@ CommonBudget common_budget(const SweepSettings& settings, double check_change) n
   common.total =
       length(length(common.reference, common.gain), length(common.mounting, common.drift));
   return common;
+}
+
+SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_hz, double drift,
+                             double factor, double highest_hz, double of_scale) noexcept {
+  constexpr double kPpmPerStandard = 2e6;
+  constexpr double kImageSkew = 1.6e-5;
+  constexpr double kImages = 1.5e-3;
+  const double share = highest_hz / sample_rate_hz;
+  const double crosstalk = settings.crosstalk_expanded_percent / kPercentPerStandard;
+  SharedEffects shared;
+  shared.skew_s = length(0.5 * settings.skew_expanded_s, kImageSkew / sample_rate_hz);
+  shared.clock = settings.clock_expanded_ppm / kPpmPerStandard;
+  shared.drift = drift;
+  shared.corner_hz = settings.repeat_s > 0.0
+                         ? static_cast<double>(settings.cycles) / settings.repeat_s
+                         : highest_hz;
+  shared.images = kImages * share * share;
+  shared.leak = crosstalk * factor;
+  shared.leak_back = crosstalk / factor;
+  shared.linearity =
+      settings.linearity_expanded_percent / kPercentPerStandard * of_scale * of_scale;
+  return shared;
 }
 
 double expected_scatter(const PointScatter& scatter, const BudgetInputs& inputs) noexcept {

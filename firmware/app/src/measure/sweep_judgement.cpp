@@ -28,9 +28,10 @@ constexpr double kLargestJump = 8.0;     // Of the ratio, from one frequency to 
 constexpr double kLead_rad = 0.0175;
 constexpr double kLeadPerHz_rad = 6.3e-6;
 
-double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
+// Out of line, for their size.
+[[gnu::noinline]] double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
 
-bool is_beyond(double ratio, double factor) noexcept {
+[[gnu::noinline]] bool is_beyond(double ratio, double factor) noexcept {
   return !(ratio < factor) || !(ratio * factor > 1.0);
 }
 
@@ -319,6 +320,7 @@ void Sweep::end_target() noexcept {
     results_.check_before = ratio;
   } else {
     results_.check_after = ratio;
+    work_.check_scatter_ = scatter;
   }
   begin_next();
 }
@@ -328,9 +330,11 @@ void Sweep::end_target() noexcept {
 bool Sweep::has_turned_round(Complex ratio, Complex before) const noexcept {
   const double flat = magnitude(results_.check_before);
   const std::size_t count = results_.point_count;
-  // The check frequency is far below the resonance, as the first one mostly is.
-  const double before_hz =
-      count > 0 ? results_.settings.frequency_hz[count - 1] : work_.target_.frequency_hz;
+  // The check frequency is far below the resonance, and so is what lies below it.
+  const double first_hz = work_.target_.frequency_hz < results_.settings.check_hz
+                              ? work_.target_.frequency_hz
+                              : results_.settings.check_hz;
+  const double before_hz = count > 0 ? results_.settings.frequency_hz[count - 1] : first_hz;
   const double along = ratio.re * before.re + ratio.im * before.im;
   return along < -kTurnedRound * magnitude(ratio) * magnitude(before) &&
          !is_beyond(magnitude(ratio) / flat, kFlatWithin) &&

@@ -24,7 +24,8 @@ Status SweepResults::copy_to(FrequencyResponse& response) const noexcept {
       return added;
     }
   }
-  return response.set_common(common.total);
+  const Status set = response.set_shared(shared);
+  return set == Status::kOk ? response.set_common(common.total) : set;
 }
 
 }  // namespace emax::app

@@ -14,7 +14,8 @@ constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
 constexpr std::size_t kMaxLine = 98;
 
-double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
+// Out of line, for its size.
+[[gnu::noinline]] double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
 
 /// The standard uncertainty of the amplitude with the common part.
 double total_u(const SweepPoint& point, const CommonBudget& common) noexcept {
@@ -72,34 +73,15 @@ void write_stated(const SweepSettings& settings, ReportWriter& out) noexcept {
     const char* unit;
   };
   const Stated all[] = {
-      {"Clock", settings.clock_expanded_ppm, " ppm of every frequency"},
-      {"Crosstalk", settings.crosstalk_expanded_percent, " % of the other channel"},
-      {"Linearity", settings.linearity_expanded_percent, " % up to full scale"},
+      {"Clock", settings.clock_expanded_ppm, " ppm"},
+      {"Crosstalk", settings.crosstalk_expanded_percent, " %"},
+      {"Linearity", settings.linearity_expanded_percent, " %"},
   };
   for (const Stated& stated : all) {
     if (stated.expanded > 0.0) {
       out.label(stated.label).text("U = ").general(stated.expanded, 4).text(stated.unit).line();
     }
   }
-}
-
-void write_full_scales(const SweepSettings& settings, ReportWriter& out) noexcept {
-  if (settings.drive_full_scale_v == 0.0 && settings.reference_full_scale_v == 0.0 &&
-      settings.device_full_scale_v == 0.0) {
-    return;
-  }
-  const auto write = [&out](double volts, const char* of) {
-    if (volts > 0.0) {
-      out.general(volts, 6).text(" V").text(of);
-    } else {
-      out.text("the converter's own").text(of);
-    }
-  };
-  out.label("Full scale");
-  write(settings.drive_full_scale_v, " (drive), ");
-  write(settings.reference_full_scale_v, " (reference), ");
-  write(settings.device_full_scale_v, " (device)");
-  out.line();
 }
 
 void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
@@ -128,7 +110,6 @@ void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
   }
   out.text(", taken out").line();
   write_stated(settings, out);
-  write_full_scales(settings, out);
 }
 
 void write_silence(const SweepResults& sweep, ReportWriter& out) noexcept {
@@ -182,7 +163,8 @@ void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
       out.text(" Hz: the repeats differ by more than chance, u ");
       out.fixed(kPercent * point.budget.noise, 4).text(" % of the mean").line();
     } else {
-      out.text(" Hz: distorted, the sine leaves ").fixed(point.residual_percent, 2);
+      out.text(" Hz: distorted, the sine leaves ")
+          .fixed(static_cast<double>(point.residual_percent), 2);
       out.text(" % of the amplitude over").line();
     }
   }
@@ -216,7 +198,7 @@ constexpr Column kFrequency = {10, "f", "Hz"};
 constexpr Column kAmplitude = {12, "A", "V/(m/s^2)"};
 constexpr Column kAmplitudePerG = {12, "A", "V/g"};
 constexpr Column kRest[] = {{10, "phase", "deg"}, {9, "noise", "%"},      {9, "quant.", "%"},
-                            {9, "hum", "%"},      {10, "distort.", "%"},  {9, "u(phase)", "deg"},
+                            {9, "hum", "%"},      {10, "distort.", "%"},  {9, "shared", "%"},
                             {9, "U(A)", "%"},     {11, "U(phase)", "deg"}};
 
 void write_budget_head(const char* const Column::*words, ReportWriter& out) noexcept {
@@ -249,7 +231,7 @@ void write_budget_row(const SweepPoint& point, const CommonBudget& common, int d
   out.cell(9).fixed(kPercent * budget.quantisation, 4);
   out.cell(9).fixed(kPercent * budget.hum, 4);
   out.cell(10).fixed(kPercent * budget.distortion, 4);
-  out.cell(9).fixed(kDegreesPerRadian * budget.phase_rad, 4);
+  out.cell(9).fixed(kPercent * budget.shared, 4);
   out.cell(9).fixed(kCoverageFactor * kPercent * total_u(point, common) / response.amplitude, 4);
   out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
 }

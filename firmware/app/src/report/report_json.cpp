@@ -125,6 +125,16 @@ void write_common(const SweepResults& sweep, JsonWriter& json) noexcept {
   json.number("total", common.total);
   json.close();
   json.number("common_percent", kCoverageFactor * kPercent * common.total);
+  const SharedEffects& shared = sweep.shared;
+  json.open("shared");
+  json.number("skew", shared.skew_s);
+  json.number("clock", shared.clock);
+  json.number("drift", shared.drift);
+  json.number("images", shared.images);
+  json.number("leak", shared.leak);
+  json.number("leak_back", shared.leak_back);
+  json.number("linearity", shared.linearity);
+  json.close();
 }
 
 void write_budget(const SweepResults& sweep, JsonWriter& json) noexcept {
@@ -139,7 +149,8 @@ void write_budget(const SweepResults& sweep, JsonWriter& json) noexcept {
   for (const SweepPoint& point : sweep.points()) {
     const double row[] = {point.point.frequency_hz,  point.budget.noise,
                           point.budget.quantisation, point.budget.hum,
-                          point.budget.distortion,   point.budget.phase_rad};
+                          point.budget.distortion,   point.point.u_phase_rad,
+                          point.budget.shared};
     json.open_row(nullptr);
     for (const double value : row) {
       json.number(nullptr, value);

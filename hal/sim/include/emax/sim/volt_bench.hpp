@@ -17,6 +17,9 @@ inline constexpr double kSaturationFactor = 20.0;
 /// Volts per second by which the offset climbs in FaultKind::kDcDrift.
 inline constexpr double kOffsetClimbPerSecond_v = 5.0;
 
+/// The amplitude of a sine at which a channel's gain has changed by its linearity error.
+inline constexpr double kLinearScale_v = 10.0;
+
 /// What goes wrong: once, or from then on.
 enum class FaultKind : std::uint8_t {
   kNone,
@@ -76,7 +79,12 @@ struct BenchSettings {
   double offset_v = 3e-3;  ///< Standard deviation of the offset that is drawn for each channel.
   double hum_v = 2e-4;     ///< Amplitude at the ADC; a third as much at three times the frequency.
   double hum_hz = 49.97;
-  double skew_s = 1.25e-6;        ///< The device is sampled later than the reference; see `Plant`.
+  double skew_s = 1.25e-6;       ///< The device is sampled later than the reference; see `Plant`.
+  double skew_expanded_s = 0.0;  ///< Of that.
+  double clock_expanded_ppm = 0.0;          ///< Of the rate of sampling.
+  double crosstalk_expanded_percent = 0.0;  ///< Of each channel's voltage seen in the other.
+  /// Change of each channel's gain at kLinearScale_v, growing with the square of the voltage.
+  double linearity_expanded_percent = 0.0;
   bool ideal_converters = false;  ///< DAC and ADC use all 32 bits of a word; they still clip.
   Fault fault;
   Fault second_fault;
@@ -89,6 +97,12 @@ struct BenchTruth {
   double reference_drift = 0.0;        ///< Relative, reached at drift_time_s.
   double gain_factor = 1.0;      ///< True ratio of the gains, device over reference, over nominal.
   double mounting_factor = 1.0;  ///< Of the device's channel.
+  double skew_s = 0.0;           ///< True.
+  double clock_factor = 1.0;     ///< True rate of sampling over the nominal one.
+  double into_reference = 0.0;   ///< Crosstalk.
+  double into_device = 0.0;
+  double reference_linearity = 0.0;  ///< Relative change of the gain at kLinearScale_v.
+  double device_linearity = 0.0;
   double reference_offset_v = 0.0;
   double device_offset_v = 0.0;
   /// The device's sensitivity that follows from certificate and nominal gains if nothing else is
@@ -174,6 +188,6 @@ class VoltBench {
   bool swapped_ = false;
 };
 
-static_assert(sizeof(VoltBench) <= 1792);
+static_assert(sizeof(VoltBench) <= 1856);
 
 }  // namespace emax::sim

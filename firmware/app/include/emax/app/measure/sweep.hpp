@@ -106,6 +106,7 @@ class Sweep {
   void begin_next() noexcept;
   void fail(Status status) noexcept;
   void finish() noexcept;
+  void share_effects(double check_change) noexcept;
   double acceleration_of(double reference_v) const noexcept;
   double aim_mps2() const noexcept;
   double ratio_factor() const noexcept;

@@ -10,18 +10,19 @@
 #include "emax/app/settings/sweep_settings.hpp"
 #include "emax/base/complex.hpp"
 #include "emax/base/span.hpp"
+#include "emax/identify/frequency_response.hpp"
 
 namespace emax::app {
 
 /// The uncertainty budget of one point in the manner of ISO 16063-21: relative standard
-/// uncertainties of the amplitude, which are also those of the phase in rad.
+/// uncertainties of the amplitude, which are also those of the phase in rad, `shared` apart.
 struct PointBudget {
   double noise = 0.0;         ///< Of both channels, pooled over all points, or this point's own
                               ///< scatter where that is larger beyond chance.
   double quantisation = 0.0;  ///< Converters' steps: within `noise`, and its least value.
   double hum = 0.0;           ///< Mains seen with the drive at zero, as far as it is near.
   double distortion = 0.0;    ///< What the fit leaves over beyond noise.
-  double phase_rad = 0.0;     ///< All of the phase.
+  double shared = 0.0;        ///< Amplitude's part of what all points share in their own ways.
 };
 
 /// What is common to all points: relative standard uncertainties.
@@ -101,6 +102,18 @@ PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
 ///
 /// @param[in] check_change Relative change of the check frequency's ratio over the sweep.
 CommonBudget common_budget(const SweepSettings& settings, double check_change) noexcept;
+
+/// What the parameters' uncertainties hold beside the points' own and the common part: what the
+/// settings state of skew, clock, crosstalk and linearity; the drift within the sweep; and the
+/// images of the held drive, which a reconstruction filter of fourth order at a quarter of the rate
+/// of sampling leaves: 1.5e-3 (f/rate)^2 of the amplitude and 1.6e-5 of an interval of skew.
+///
+/// @param[in] drift      Relative change of the check's ratio beyond its noise.
+/// @param[in] factor     V/(m/s^2) of K per device's volt over reference's.
+/// @param[in] highest_hz Of the points.
+/// @param[in] of_scale   Largest part of full scale that a point used.
+SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_hz, double drift,
+                             double factor, double highest_hz, double of_scale) noexcept;
 
 /// Relative standard deviation of each component of one repeat's ratio if the channels' noise is
 /// that without drive.

@@ -23,7 +23,7 @@ struct SweepPoint {
   PointBudget budget;
   double acceleration_mps2 = 0.0;  ///< Peak.
   double drive_v = 0.0;            ///< Peak.
-  double residual_percent = 0.0;   ///< What the sine leaves over, of the amplitude, worse channel.
+  float residual_percent = 0.0F;   ///< What the sine leaves over, of the amplitude, worse channel.
   bool flagged = false;            ///< Residual, distortion or scatter beyond its limit.
   bool scatters = false;           ///< Flagged for its scatter.
 };
@@ -44,6 +44,7 @@ struct SweepResults {
   BudgetInputs inputs;  ///< With both channels without drive.
   CommonBudget common;  ///< Complete when `done()`; without drift unless both checks were measured.
   ChannelNoise noise;   ///< Pooled over the points, when `done()`.
+  SharedEffects shared;   ///< When `done()`.
   SettingsError refused;  ///< What the last start refused, if it did.
   /// The ratio at the check frequency in V/(m/s^2), before and after the points; 0 if not measured.
   Complex check_before;

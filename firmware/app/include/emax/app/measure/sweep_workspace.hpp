@@ -72,6 +72,7 @@ class SweepWorkspace {
   FrameSineFit fit_;
   Repeats repeats_;
   SilenceRecord silence_;
+  PointScatter check_scatter_;
   std::array<PointScatter, kMaxPoints> scatter_ = {};
   std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
   std::array<hal::Frame, hal::kMaxBlockFrames> frames_ = {};
