@@ -111,7 +111,7 @@ TEST(EvaluationFigures, GuardsEachUncertainty) {
     EXPECT_EQ(known->guard.searches, 5U);
     EXPECT_EQ(known->guard.disagreements, 0U);
     // Polynomials hold to 1e-10 of E, or to 1e-6 of u.
-    EXPECT_LT(known->guard.largest_excess, 1e-8);
+    EXPECT_LT(known->guard.largest_excess, 1e-8F);
   }
   // The trials over the box are the normal ones: made once, and guarded as these.
   settings.distribution = emax::Distribution::kNormal;

@@ -282,7 +282,7 @@ void Evaluation::step_figure_guard() noexcept {
   // A search that fails counts as disagreement.
   (void)guard.step(work_.part_.trial.trials, work_.search_, work_.grid_);
   if (guard.done()) {
-    uncertainty().guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
+    uncertainty().guard = results_of(guard);
     uncertainty().is_done = true;
     work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
   }

@@ -38,6 +38,12 @@ bool is_same(Span<const T> a, Span<const T> b) noexcept {
 
 }  // namespace
 
+GuardResults results_of(const EnergyGuard& guard) noexcept {
+  return {static_cast<std::uint16_t>(guard.searches()),
+          static_cast<std::uint16_t>(guard.disagreements()),
+          static_cast<float>(guard.largest_excess())};
+}
+
 void TrialResults::take(const MonteCarlo& monte_carlo, const MonteCarloStore& store) noexcept {
   static_assert(MonteCarlo::kBins % kHistogramRows == 0);
   constexpr std::size_t kBinsPerRow = MonteCarlo::kBins / kHistogramRows;

@@ -447,7 +447,7 @@ void Evaluation::step_guard() noexcept {
   // A search that fails counts as disagreement.
   (void)guard.step(work_.part_.trial.trials, work_.search_, work_.grid_);
   if (guard.done()) {
-    results_.guard = {guard.searches(), guard.disagreements(), guard.largest_excess()};
+    results_.guard = results_of(guard);
     end_trials();
   }
 }

@@ -140,7 +140,7 @@ void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
   out.text(guard.disagreements == 1 ? " disagreement" : " disagreements").line();
   if (guard.disagreements > 0) {
     out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
-    out.general(kPercent * guard.largest_excess, 3)
+    out.general(kPercent * static_cast<double>(guard.largest_excess), 3)
         .text(
             " % more energy with another signal than\n"
             "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "

@@ -17,6 +17,7 @@
 #include "emax/model/modal_model.hpp"
 #include "emax/model/response_scan.hpp"
 #include "emax/uncertainty/energy_branches.hpp"
+#include "emax/uncertainty/energy_guard.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 #include "emax/uncertainty/monte_carlo.hpp"
 #include "emax/uncertainty/trend.hpp"
@@ -57,10 +58,13 @@ struct TrialResults {
 
 /// How the full searches went that were made for some of the trials.
 struct GuardResults {
-  std::uint32_t searches = 0;  ///< 0 for Method::kPaper, whose trials are full runs.
-  std::uint32_t disagreements = 0;
-  double largest_excess = 0.0;  ///< As `EnergyGuard::largest_excess()`.
+  std::uint16_t searches = 0;  ///< 0 for Method::kPaper, whose trials are full runs.
+  std::uint16_t disagreements = 0;
+  float largest_excess = 0.0F;  ///< As `EnergyGuard::largest_excess()`.
 };
+
+/// What is kept of a guard that is done.
+GuardResults results_of(const EnergyGuard& guard) noexcept;
 
 /// What is known of the uncertainty of a largest energy: JCGM 101, jointly normal with the fit's
 /// covariance, or independent normals where parameters were given.
@@ -69,12 +73,12 @@ struct EnergyUncertainty {
   Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, there are no numbers.
   std::uint32_t trials = 0;
   std::uint32_t redraws = 0;  ///< Draws that were no device and were made again.
+  GuardResults guard;
   double mean_v2s = 0.0;
   double u_v2s = 0.0;
   CoverageInterval symmetric;  ///< In V^2 s.
   CoverageInterval shortest;
   double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a) over the trials.
-  GuardResults guard;
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
 };
