@@ -382,6 +382,24 @@ class Options(ProgramTest):
             self.assertEqual(self.succeed("report", *MODEL, *QUICK, env=os.environ | {"LC_ALL": name}), first)
 
 
+class Threads(ProgramTest):
+    def test_no_byte_depends_on_their_number(self):
+        for arguments in (
+            ["--points", DATA / "djb_a1800v.csv", "--trials", "5000", "--distribution", "normal"],
+            ["--model", "1.037,4073,0.3182,0.003,6,0.0004", "--method", "paper", "--trials", "1000"],
+        ):
+            one, *others = (
+                self.succeed("report", *arguments, "--trend", "none", "--json", "--threads", number)
+                for number in (1, 2, 3, 7)
+            )
+            self.assertGreater(json.loads(one)["monte_carlo"]["u"], 0.0)
+            self.assertEqual(others, [one] * 3)
+
+    def test_numbers_that_are_refused(self):
+        for number in ("0", "65", "1.5", "-1", "all"):
+            self.refuse_option("--threads", number, "expected a whole number from 1 to 64")
+
+
 class BadOptions(ProgramTest):
     def test_commands(self):
         self.refuse([], "emax: ", "expected emax report")

@@ -619,36 +619,60 @@ Status WlspDraws::start(const Wlsp& fit, std::uint32_t draws,
 void WlspDraws::step(const Wlsp& fit, std::uint32_t count) noexcept {
   const std::uint32_t left = wanted_ - made_;
   const std::uint32_t end = made_ + (count < left ? count : left);
-  for (; made_ < end; ++made_) {
-    double deviation[3] = {};
-    if (!draw(fit, deviation)) {
-      ++discarded_;
-      continue;
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      sum_[i] += deviation[i];
-      for (std::size_t j = 0; j < 3; ++j) {
-        products_[i][j] += deviation[i] * deviation[j];
-      }
+  while (made_ < end) {
+    add(draw(fit, generator_));
+  }
+}
+
+void WlspDraws::add(const WlspDeviation& deviation) noexcept {
+  ++made_;
+  if (!deviation.is_device) {
+    ++discarded_;
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum_[i] += deviation.parameters[i];
+    for (std::size_t j = 0; j < 3; ++j) {
+      products_[i][j] += deviation.parameters[i] * deviation.parameters[j];
     }
   }
 }
 
-bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
+void WlspDraws::look_ahead(const Wlsp& fit, std::uint32_t skipped,
+                           Span<WlspDeviation> deviations) const noexcept {
+  WichmannHill generator = generator_;
+  generator.jump(numbers_per_draw(fit) * skipped);
+  for (WlspDeviation& deviation : deviations) {
+    deviation = draw(fit, generator);
+  }
+}
+
+void WlspDraws::take(const Wlsp& fit, Span<const WlspDeviation> deviations) noexcept {
+  generator_.jump(numbers_per_draw(fit) * deviations.size());
+  for (const WlspDeviation& deviation : deviations) {
+    add(deviation);
+  }
+}
+
+std::uint64_t WlspDraws::numbers_per_draw(const Wlsp& fit) noexcept {
+  return 2 * (std::uint64_t{fit.response_.size()} + (fit.has_common_ ? 1U : 0U));
+}
+
+WlspDeviation WlspDraws::draw(const Wlsp& fit, WichmannHill& generator) const noexcept {
   // For the difference from the measured values: small numbers, so that solving with R^T R loses
   // nothing that matters.
   Wlsp::NormalStep step;
   bool possible = true;
   double together = 0.0;
   if (fit.has_common_) {
-    const double u1 = generator_.next();
-    const double u2 = generator_.next();
+    const double u1 = generator.next();
+    const double u2 = generator.next();
     together = box_muller(u1, u2).first;
   }
   for (std::size_t i = 0; i < fit.response_.size(); ++i) {
     const ResponsePoint& measured = fit.response_.points()[i];
-    const double u1 = generator_.next();
-    const double u2 = generator_.next();
+    const double u1 = generator.next();
+    const double u2 = generator.next();
     const NormalPair normal = box_muller(u1, u2);
     ResponsePoint drawn = measured;
     drawn.amplitude += drawn.u_amplitude * normal.first;
@@ -666,12 +690,12 @@ bool WlspDraws::draw(const Wlsp& fit, double (&deviation)[3]) noexcept {
   const double* x = step.x;
   const double scaled[3] = {fit.scaled_[0] + x[0], fit.scaled_[1] + x[1], fit.scaled_[2] + x[2]};
   if (!possible || !(scaled[0] > 0.0) || !(scaled[2] > 0.0) || !all_finite(scaled)) {
-    return false;
+    return {};
   }
-  deviation[0] = 1.0 / scaled[0] - estimate_[0];
-  deviation[1] = fit.max_frequency_hz_ * sqrt(scaled[0] / scaled[2]) - estimate_[1];
-  deviation[2] = scaled[1] / sqrt(scaled[0] * scaled[2]) - estimate_[2];
-  return true;
+  return {{1.0 / scaled[0] - estimate_[0],
+           fit.max_frequency_hz_ * sqrt(scaled[0] / scaled[2]) - estimate_[1],
+           scaled[1] / sqrt(scaled[0] * scaled[2]) - estimate_[2]},
+          true};
 }
 
 WlspDrawsResult WlspDraws::result() const noexcept {

@@ -143,6 +143,19 @@ bool DeviceDraws::draw(std::uint32_t trial) noexcept {
   return found;
 }
 
+void DeviceDraws::start_share(std::uint32_t first) noexcept {
+  counts_from_ = first;
+  counted_ = first;
+  redraws_ = 0;
+}
+
+void DeviceDraws::join(const DeviceDraws& share) noexcept {
+  if (share.counts_from_ == counted_) {
+    counted_ = share.counted_;
+    redraws_ += share.redraws_;
+  }
+}
+
 void DeviceDraws::draw_box() noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     uniform_[i] = generator_.next();

@@ -246,6 +246,21 @@ std::size_t EnergyTrials::work() const noexcept {
                     : kWorkOfRefinement * (branches_.most_switches() + 1);
 }
 
+EnergyTrials EnergyTrials::share(std::uint32_t first, Span<TrialPiece> pieces) const noexcept {
+  EnergyTrials share = *this;
+  share.draws_.start_share(first);
+  for (std::size_t i = 0; i < pieces_used_; ++i) {
+    pieces[i] = pieces_[i];
+  }
+  share.pieces_ = pieces_.empty() ? Span<TrialPiece>() : pieces;
+  return share;
+}
+
+void EnergyTrials::join(const EnergyTrials& share) noexcept {
+  draws_.join(share.draws_);
+  is_exhausted_ = is_exhausted_ || share.is_exhausted_;
+}
+
 double EnergyTrials::energy(std::uint32_t trial, GridWorkspace& workspace) noexcept {
   begin(trial, workspace);
   return run(workspace);

@@ -162,6 +162,11 @@ bool take_damping(std::string_view text, ReportOptions& options) noexcept {
          options.damping != 1.0;
 }
 
+bool take_threads(std::string_view text, ReportOptions& options) noexcept {
+  return take_integer(text, options.threads) && options.threads >= 1 &&
+         options.threads <= kMaxThreads;
+}
+
 using Take = bool (*)(std::string_view text, ReportOptions& options);
 
 // Options that are written down one below the other, with what they write to.
@@ -313,7 +318,19 @@ std::vector<Option> bench_setting_options(ReportOptions& options) {
   return all;
 }
 
-// Those of the rows, with the two that are lists.
+constexpr const char* kTrialsHeading = "Monte Carlo";
+
+std::vector<Option> thread_options(ReportOptions& options) {
+  Builder builder(options, kTrialsHeading);
+  builder.add("threads", "N", "the number of cores", "a whole number from 1 to 64",
+              "of the trials and of the draws for the covariance of\n"
+              "the fit; no result depends on it",
+              take_threads);
+  return builder.options();
+}
+
+// Those of the rows, with the two that are lists, and with the threads behind the other options of
+// the trials.
 std::vector<Option> evaluation_options(ReportOptions& options) {
   std::vector<Option> all = setting_options(options.settings);
   for (Option& option : all) {
@@ -323,6 +340,10 @@ std::vector<Option> evaluation_options(ReportOptions& options) {
       option.take = [&options](std::string_view text) { return take_trend(text, options); };
     }
   }
+  const auto is_of_trials = [](const Option& option) { return option.heading == kTrialsHeading; };
+  const auto last = std::find_if(all.rbegin(), all.rend(), is_of_trials);
+  const std::vector<Option> threads = thread_options(options);
+  all.insert(last.base(), threads.begin(), threads.end());
   return all;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "desk/cli/option.hpp"
 #include "desk/cli/problem.hpp"
 #include "desk/import/import_points.hpp"
+#include "desk/trials/thread_helper.hpp"
 
 namespace emax::desk {
 
@@ -30,6 +32,7 @@ struct ReportOptions {
   std::string model_text;   ///< As it was given; empty for none.
   app::Device device = {};  ///< What `model_text` says.
   std::size_t seed_count = 4;
+  std::uint32_t threads = static_cast<std::uint32_t>(count_cores());
   /// Expanded. Without the option it is what `sweep` says on the bench, and 0 else.
   double reference_uncertainty_percent = 0.0;
   sim::BenchSettings bench;

@@ -24,6 +24,7 @@
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
 #include "desk/report/fit_causes.hpp"
+#include "desk/trials/thread_helper.hpp"
 
 namespace emax::desk {
 
@@ -133,6 +134,8 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
   if (pieces != nullptr) {
     sequencer.lend_trial_pieces(Span<TrialPiece>(pieces.get(), EnergyTrials::kManyPieces));
   }
+  ThreadHelper helper(options.threads);
+  sequencer.lend_helper(&helper);
   ConsoleProgress progress;
   Problem problem = start(options, job, imported, progress);
   if (!problem) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "emax/base/signs.hpp"
@@ -11,6 +10,7 @@
 #include "emax/energy/phi_operator.hpp"
 
 #include "desk/trials/paper_lanes.hpp"
+#include "desk/trials/shares.hpp"
 
 namespace emax::desk {
 namespace {
@@ -53,25 +53,10 @@ void run_share(const ModalModel& model, const PaperProcedure& procedure,
 void find_paper_energies(const ModalModel& model, const PaperProcedure& procedure,
                          std::size_t threads, Span<const Accelerometer> devices,
                          Span<double> energies) {
-  std::vector<std::thread> helpers;
-  const std::size_t count = devices.size();
-  const std::size_t shares = threads < count ? threads : (count != 0 ? count : 1);
-  for (std::size_t share = 0; share < shares; ++share) {
-    const std::size_t begin = count * share / shares;
-    const std::size_t size = count * (share + 1) / shares - begin;
-    const auto run = [&model, &procedure, part = devices.from(begin).first(size),
-                      results = energies.from(begin).first(size)] {
-      run_share(model, procedure, part, results);
-    };
-    if (share + 1 == shares) {
-      run();
-    } else {
-      helpers.emplace_back(run);
-    }
-  }
-  for (std::thread& helper : helpers) {
-    helper.join();
-  }
+  share_out(threads, devices.size(), [&](const Share& share) {
+    run_share(model, procedure, devices.from(share.begin).first(share.size),
+              energies.from(share.begin).first(share.size));
+  });
 }
 
 }  // namespace emax::desk

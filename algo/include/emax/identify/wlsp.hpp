@@ -187,6 +187,12 @@ struct WlspDrawsResult {
   double covariance[kWlspParameters][kWlspParameters] = {};
 };
 
+/// What a draw moves the estimates by.
+struct WlspDeviation {
+  double parameters[kWlspParameters] = {};
+  bool is_device = false;
+};
+
 /// The covariance of the estimates by Monte Carlo draws, in slices of any size, so that a console
 /// is never blocked.
 ///
@@ -223,15 +229,28 @@ class WlspDraws {
   /// @param[in] fit The same fit that `start()` was given, unchanged.
   void step(const Wlsp& fit, std::uint32_t count) noexcept;
 
+  /// Looks at draws that are still to be made: for another thread, which shares them.
+  ///
+  /// @param[in]  fit        As for `step()`.
+  /// @param[in]  skipped    So many draws after the next one.
+  /// @param[out] deviations Of as many draws as there is room for.
+  void look_ahead(const Wlsp& fit, std::uint32_t skipped,
+                  Span<WlspDeviation> deviations) const noexcept;
+  /// Takes the next draws as `look_ahead()` has seen them; not more than `left()`.
+  void take(const Wlsp& fit, Span<const WlspDeviation> deviations) noexcept;
+
   bool done() const noexcept { return made_ == wanted_; }
   std::uint32_t made() const noexcept { return made_; }
+  std::uint32_t left() const noexcept { return wanted_ - made_; }
 
   /// @returns Mean and covariance of the draws made so far; the covariance divides by draws - 1 and
   /// is zero below 2.
   WlspDrawsResult result() const noexcept;
 
  private:
-  bool draw(const Wlsp& fit, double (&deviation)[3]) noexcept;
+  WlspDeviation draw(const Wlsp& fit, WichmannHill& generator) const noexcept;
+  void add(const WlspDeviation& deviation) noexcept;
+  static std::uint64_t numbers_per_draw(const Wlsp& fit) noexcept;
 
   WichmannHill generator_;
   std::uint32_t wanted_ = 0;

@@ -74,6 +74,11 @@ class DeviceDraws {
   ///   after all trials before it: so later passes over the trials change nothing.
   std::uint32_t redraws() const noexcept { return redraws_; }
 
+  /// Makes a copy for trials from `first` on count its own: see `join()`.
+  void start_share(std::uint32_t first) noexcept;
+  /// Takes over what a share has counted that begins where the count of this one ends.
+  void join(const DeviceDraws& share) noexcept;
+
   const Accelerometer& estimate() const noexcept { return estimate_; }
   Distribution distribution() const noexcept { return distribution_; }
   /// The device at a place, which may be none.
@@ -107,6 +112,7 @@ class DeviceDraws {
   WichmannHill generator_ = {};
   std::uint32_t next_trial_ = 0;
   std::uint32_t counted_ = 0;
+  std::uint32_t counts_from_ = 0;
   std::uint32_t redraws_ = 0;
   Distribution distribution_ = {};
 };

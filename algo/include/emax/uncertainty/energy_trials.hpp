@@ -109,6 +109,15 @@ class EnergyTrials {
   /// @returns The largest energy of one trial, for a = 1, all its steps at once.
   double energy(std::uint32_t trial, GridWorkspace& workspace) noexcept;
 
+  /// @returns A copy that makes the trials from `first` on, beside this one: in another thread.
+  ///
+  /// @param[out] pieces Memory of its own, of at least `pieces_in_use()`, as long as it is asked.
+  EnergyTrials share(std::uint32_t first, Span<TrialPiece> pieces) const noexcept;
+  std::size_t pieces_in_use() const noexcept { return pieces_used_; }
+  /// Takes over what a share has counted: `redraws()` and `is_exhausted()`. The shares in the order
+  /// of their trials, without gaps, from the first trial on that has not been made here.
+  void join(const EnergyTrials& share) noexcept;
+
   /// @returns The largest energy of a given device, found as in a trial: of a corner of the box,
   ///   for one.
   double energy_of(const Accelerometer& device, GridWorkspace& workspace) noexcept;
@@ -122,6 +131,8 @@ class EnergyTrials {
   double scale_of(const Accelerometer& device) const noexcept;
 
   const SearchSettings& search_settings() const noexcept { return search_; }
+  /// The cells of the grid of the paper's method.
+  std::size_t cells() const noexcept { return cells_; }
   /// @returns With `ready()`, whether polynomials answer all trials within their reach.
   bool predicts() const noexcept;
   /// @returns What a trial may be off by, as part of the energy.

@@ -232,6 +232,9 @@ class AdaptiveTrials {
   /// block.
   std::uint32_t next_trial(const MonteCarlo& engine) const noexcept;
 
+  /// @returns The number of trials in the blocks so far, with the one that runs.
+  std::uint32_t end_of_block() const noexcept { return (blocks_ + 1) * block_size_; }
+
   /// As `MonteCarlo::add()`.
   void add(double value, MonteCarlo& engine, MonteCarloStore& store) noexcept;
 

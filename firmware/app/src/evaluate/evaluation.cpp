@@ -128,6 +128,7 @@ void Evaluation::begin_run(Goal goal) noexcept {
   work_.goal_ = goal;
   work_.store_ = {};
   work_.pieces_ = {};
+  work_.helper_ = nullptr;
   work_.stored_ = 0;
   work_.trial_runs_ = false;
   work_.trend_search_runs_ = false;
@@ -182,6 +183,8 @@ void Evaluation::drop_incomplete() noexcept {
 }
 
 void Evaluation::lend_trial_pieces(Span<TrialPiece> pieces) noexcept { work_.pieces_ = pieces; }
+
+void Evaluation::lend_helper(EvaluationHelper* helper) noexcept { work_.helper_ = helper; }
 
 void Evaluation::lend_trial_store(Span<double> store) noexcept {
   work_.store_ = store;

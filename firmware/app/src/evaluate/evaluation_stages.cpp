@@ -185,7 +185,11 @@ void Evaluation::begin_fit_draws() noexcept {
 
 void Evaluation::step_fit_draws() noexcept {
   WlspDraws& draws = work_.draws_;
-  draws.step(results_.fit, kDrawsPerStep);
+  if (work_.helper_ != nullptr) {
+    work_.helper_->make_fit_draws(draws, results_.fit);
+  } else {
+    draws.step(results_.fit, kDrawsPerStep);
+  }
   if (draws.done()) {
     results_.fit_draws = draws.result();
     results_.has_fit_draws = true;
@@ -353,6 +357,23 @@ bool Evaluation::advance_trial(std::uint32_t trial) noexcept {
   return trials.done();
 }
 
+/// Whether a helper makes this trial, which is the next one for the store.
+bool Evaluation::is_helped(std::uint32_t trial) const noexcept {
+  return work_.helper_ != nullptr && trial == work_.stored_ && trial < work_.store_.size();
+}
+
+/// Has the helper make trials for the store, up to this one.
+void Evaluation::store_trials(std::uint32_t end) noexcept {
+  const std::size_t room = work_.store_.size() < end ? work_.store_.size() : end;
+  const Span<double> values = work_.store_.first(room).from(work_.stored_);
+  const std::size_t made =
+      work_.helper_->make_trials(work_.part_.trial.trials, work_.stored_, values);
+  for (double& value : values.first(made)) {
+    value = results_.a2() * value;
+  }
+  work_.stored_ += static_cast<std::uint32_t>(made);
+}
+
 void Evaluation::run_slice() noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   MonteCarloStore& store = work_.grid_.store();
@@ -368,6 +389,9 @@ void Evaluation::run_slice() noexcept {
     if (trial < work_.stored_) {
       value = work_.store_[trial];
       work += kWorkOfStoredValue;
+    } else if (is_helped(trial)) {
+      store_trials(adapts ? part.adaptive.end_of_block() : work_.trials_);
+      return;
     } else {
       work += work_of_trial;
       if (!advance_trial(trial)) {

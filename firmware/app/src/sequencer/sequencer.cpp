@@ -183,6 +183,7 @@ Refusal Sequencer::evaluate(const Settings& settings, Goal goal) noexcept {
   }
   evaluation_run().lend_trial_store(trial_store_);
   evaluation_run().lend_trial_pieces(trial_pieces_);
+  evaluation_run().lend_helper(helper_);
   goal_ = goal;
   begin(Job::kEvaluation);
   if (evaluation_.done()) {

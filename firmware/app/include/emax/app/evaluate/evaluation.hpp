@@ -19,6 +19,7 @@ class FrequencyResponse;
 
 namespace app {
 
+class EvaluationHelper;
 class EvaluationWorkspace;
 
 /// Runs the job in short steps, so that a console or Ctrl-C is never kept waiting.
@@ -108,6 +109,10 @@ class Evaluation {
   /// After a start, until the evaluation is done.
   void lend_trial_pieces(Span<TrialPiece> pieces) noexcept;
 
+  /// Lends other cores, or null for none. They make the trials for which a store is lent, and the
+  /// draws of the fit. After a start, until the evaluation is done.
+  void lend_helper(EvaluationHelper* helper) noexcept;
+
   /// The number of draws for the covariance of the fit.
   static constexpr std::uint32_t kFitDraws = 10000;
   /// The fraction of the peak of k within which it has settled.
@@ -119,6 +124,8 @@ class Evaluation {
   double adaptive_progress(const AdaptiveTrials& adaptive) const noexcept;
   void step_stage() noexcept;
   bool advance_trial(std::uint32_t trial) noexcept;
+  bool is_helped(std::uint32_t trial) const noexcept;
+  void store_trials(std::uint32_t end) noexcept;
   void run_slice() noexcept;
 
   Status begin(Source source, const Settings& settings) noexcept;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "emax/app/evaluate/cut_range.hpp"
+#include "emax/app/evaluate/evaluation_helper.hpp"
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/span.hpp"
@@ -83,6 +84,7 @@ class EvaluationWorkspace {
 
   Span<double> store_;
   Span<TrialPiece> pieces_;
+  EvaluationHelper* helper_ = nullptr;
   double progress_ = 0.0;
   std::uint32_t stored_ = 0;  // Trials 0 to stored_ - 1 are in the store.
   std::uint32_t trials_ = 0;

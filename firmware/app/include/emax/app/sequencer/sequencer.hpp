@@ -169,6 +169,8 @@ class Sequencer {
   void lend_trial_store(Span<double> store) noexcept { trial_store_ = store; }
   /// The same for `Evaluation::lend_trial_pieces()`.
   void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { trial_pieces_ = pieces; }
+  /// The same for `Evaluation::lend_helper()`.
+  void lend_helper(EvaluationHelper* helper) noexcept { helper_ = helper; }
 
   /// All of the memory that `borrow()` lends, for text. 66 KiB on a board.
   Span<char> borrow_all() noexcept {
@@ -211,6 +213,7 @@ class Sequencer {
   hal::AnalogStream* stream_ = nullptr;  // Of the sweep that runs.
   Span<double> trial_store_;
   Span<TrialPiece> trial_pieces_;
+  EvaluationHelper* helper_ = nullptr;
   Refusal failure_;
   Job job_ = Job::kNone;
   Goal goal_ = Goal::kModel;
