@@ -15,6 +15,9 @@ constexpr std::size_t kSolvePerStep = 1024;
 /// A step that promises less than this part of the energy is the last one: it takes the switches to
 /// where their gradient is rounding, and changes the energy by less than its last digits.
 constexpr double kLastGain = 1e-14;
+/// Of the square of the gradient, what a step may leave of it: so little that Newton's method takes
+/// no more steps, and rounding of the last one.
+constexpr double kEnough = 1e-8;
 /// Switches later than this part of T are looked at for whether they are of any use.
 constexpr double kIdleEnd = 0.99;
 /// The longest move of a switch, as part of T, in a step that follows the gradient.
@@ -54,17 +57,29 @@ class EnergyShape {
   }
 
   /// Goes on with a signal that has been taken.
-  void resume(const SwitchingSignal& signal) noexcept {
+  void resume(const SwitchingSignal& signal, bool is_scaled) noexcept {
     count_ = signal.count();
     duration_s_ = signal.duration_s();
+    is_scaled_ = is_scaled;
+  }
+  /// Of what has been taken: whether a step can be scaled by the diagonal.
+  bool can_be_scaled() const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!(diagonal(i) > 0.0)) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// Takes a signal: fills `gradient` and `slope`. @returns Its energy.
   double take(const SwitchingSignal& signal) noexcept;
 
-  /// Begins to solve (minus the second derivatives) step = gradient by conjugate gradients.
-  /// @returns The square of what is left of the gradient.
-  double begin_step() noexcept;
+  /// Begins to solve (minus the second derivatives) step = gradient by conjugate gradients, scaled
+  /// by the diagonal: what is left is of the rank of the modes or little more, so few iterations
+  /// do. Where the energy is not concave, the step is better without.
+  /// @returns The square of what is left of the gradient, so scaled.
+  double begin_step(bool is_scaled) noexcept;
   /// One iteration: `norm2` is what is left. @returns False where the energy is not concave: the
   /// step stays as it is.
   bool improve_step(double& norm2) noexcept;
@@ -84,6 +99,12 @@ class EnergyShape {
  private:
   void apply_between_switches(Span<const double> vector, Span<double> result) const noexcept;
   void add_end(const Complex* output, Complex* back) const noexcept;
+  double scaled(std::size_t i) const noexcept {
+    return is_scaled_ ? residual_[i] / diagonal(i) : residual_[i];
+  }
+  double scaled_square() const noexcept;
+  /// Minus the second derivative with respect to a switch.
+  double diagonal(std::size_t i) const noexcept { return -8.0 * self_ - slope[i]; }
 
   void set_decay(std::size_t k, std::size_t m, Complex value) noexcept {
     const std::size_t place = 2 * (k * modes_.size() + m);
@@ -105,6 +126,7 @@ class EnergyShape {
   double self_ = 0.0;  // The autocorrelation of k at distance 0.
   double duration_s_ = 0.0;
   std::size_t count_ = 0;
+  bool is_scaled_ = false;
 };
 
 /// back = r times what the outputs at T still hold, seen from each mode.
@@ -208,13 +230,22 @@ void EnergyShape::apply_between_switches(Span<const double> vector,
   }
 }
 
-double EnergyShape::begin_step() noexcept {
+double EnergyShape::scaled_square() const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    sum += residual_[i] * scaled(i);
+  }
+  return sum;
+}
+
+double EnergyShape::begin_step(bool is_scaled) noexcept {
+  is_scaled_ = is_scaled;
   for (std::size_t i = 0; i < count_; ++i) {
     step[i] = 0.0;
     residual_[i] = gradient[i];
-    direction_[i] = gradient[i];
+    direction_[i] = scaled(i);
   }
-  return dot(residual_.first(count_), residual_.first(count_));
+  return scaled_square();
 }
 
 bool EnergyShape::improve_step(double& norm2) noexcept {
@@ -232,9 +263,9 @@ bool EnergyShape::improve_step(double& norm2) noexcept {
     step[i] += length * direction_[i];
     residual[i] -= length * image_[i];
   }
-  const double next = dot(residual, residual);
+  const double next = scaled_square();
   for (std::size_t i = 0; i < count_; ++i) {
-    direction_[i] = residual[i] + (next / norm2) * direction_[i];
+    direction_[i] = scaled(i) + (next / norm2) * direction_[i];
   }
   norm2 = next;
   return true;
@@ -341,7 +372,7 @@ void Refiner::end(const ModalModel& model, SwitchingSignal& signal) noexcept {
 void Refiner::step(const ModalModel& model, SwitchingSignal& signal,
                    Span<double> scratch) noexcept {
   EnergyShape shape(model, scratch);
-  shape.resume(signal);
+  shape.resume(signal, is_scaled_);
   switch (phase_) {
     case Phase::kGradient:
       take_gradient(model, signal, shape);
@@ -368,10 +399,15 @@ void Refiner::take_gradient(const ModalModel& model, SwitchingSignal& signal,
     end(model, signal);
     return;
   }
-  norm2_ = shape.begin_step();
-  enough_ = 1e-24 * norm2_;
-  iterations_ = 0;
+  begin_step(shape, shape.can_be_scaled());
   phase_ = Phase::kSolve;
+}
+
+void Refiner::begin_step(EnergyShape& shape, bool is_scaled) noexcept {
+  is_scaled_ = is_scaled;
+  norm2_ = shape.begin_step(is_scaled);
+  enough_ = kEnough * norm2_;
+  iterations_ = 0;
 }
 
 void Refiner::solve(const SwitchingSignal& signal, EnergyShape& shape) noexcept {
@@ -382,6 +418,10 @@ void Refiner::solve(const SwitchingSignal& signal, EnergyShape& shape) noexcept 
     } else {
       going = shape.improve_step(norm2_);
       ++iterations_;
+      if (!going && is_scaled_) {
+        begin_step(shape, false);
+        going = true;
+      }
     }
   }
   if (going) {

@@ -73,6 +73,7 @@ class Refiner {
   enum class Phase : std::uint8_t { kDone, kGradient, kSolve, kTry };
 
   void take_gradient(const ModalModel& model, SwitchingSignal& signal, EnergyShape& shape) noexcept;
+  void begin_step(EnergyShape& shape, bool is_scaled) noexcept;
   void solve(const SwitchingSignal& signal, EnergyShape& shape) noexcept;
   void try_step(const ModalModel& model, SwitchingSignal& signal, EnergyShape& shape) noexcept;
   void end(const ModalModel& model, SwitchingSignal& signal) noexcept;
@@ -85,7 +86,8 @@ class Refiner {
   std::size_t iterations_ = 0;  // Of the conjugate gradients.
   std::size_t tries_left_ = 0;
   bool begun_ = false;
-  bool last_ = false;  // The step promises no more than rounding.
+  bool is_scaled_ = false;  // The step is by the diagonal.
+  bool last_ = false;       // The step promises no more than rounding.
   Phase phase_ = Phase::kDone;
 };
 
