@@ -93,7 +93,12 @@ double DeviceDraws::row_sum(std::size_t parameter) const noexcept {
   return sum;
 }
 
-double DeviceDraws::reach(double most) const noexcept {
+double DeviceDraws::reach(double most) const noexcept { return reach_of(3, most); }
+
+double DeviceDraws::reach_without_damping(double most) const noexcept { return reach_of(2, most); }
+
+/// The farthest that the first parameters stay those of devices.
+double DeviceDraws::reach_of(std::size_t parameters, double most) const noexcept {
   const double room[3] = {estimate_.sensitivity, estimate_.natural_frequency_hz - kMinFrequency_hz,
                           estimate_.damping - kMinDamping < 1.0 - estimate_.damping
                               ? estimate_.damping - kMinDamping
@@ -102,7 +107,7 @@ double DeviceDraws::reach(double most) const noexcept {
     return most < 1.0 ? most : 1.0;  // `start()` has looked at the ends.
   }
   double reach = most;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < parameters; ++i) {
     const double limit = kShortOfEnd * room[i];
     const double sum = row_sum(i);
     reach = limit < reach * sum ? limit / sum : reach;
@@ -127,6 +132,7 @@ bool DeviceDraws::draw(std::uint32_t trial) noexcept {
   next_trial_ = trial + 1;
   const bool is_new = trial == counted_;
   counted_ += is_new ? 1 : 0;
+  is_first_time_ = is_new;
   if (distribution_ == Distribution::kBox) {
     draw_box();
     return true;

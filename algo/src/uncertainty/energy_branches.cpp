@@ -16,6 +16,17 @@ constexpr double kAcceptedError = 1e-10;
 constexpr double kAcceptedDeviation = 1e-6;
 /// the same where no higher degree is left: below what 2e5 draws say of an interval by a factor 50.
 constexpr double kAcceptedAtLast = 1e-4;
+/// In a piece, which has few of the draws.
+constexpr double kAcceptedInPiece = 1e-3;
+/// With many switches refinements of all draws would take minutes, and as signals end and others
+/// begin all over the ranges, no polynomial is that good. So more is accepted, and said, as the
+/// square of what there are more switches than so many;
+constexpr double kFewSwitches = 8.0;
+/// with more than so many, up to this part of the standard deviation.
+constexpr std::size_t kManySwitches = 128;
+constexpr double kMostAccepted = 0.2;
+/// The most refinements times switches that a higher degree is worth.
+constexpr std::size_t kMostWorkOfDegree = 30000;
 /// The farthest from the estimate that polynomials of the normal distribution hold, in standard
 /// deviations along each axis; and where its corners are.
 constexpr double kNormalReach = 4.0;
@@ -35,8 +46,38 @@ constexpr double kSame = 1e-9;
 /// On the way from one device to another a refinement is made wherever the resonance has moved by
 /// this angle, as far back as it is remembered. Longer legs can end on another signal.
 constexpr double kLeg_rad = 0.5;
-constexpr double kMostLegs = 32.0;
+/// As many legs as are worth their time; where the resonance moves farther, the signal is stretched
+/// to where its pulses belong.
+constexpr double kMostLegs = 8.0;
 constexpr double kMemory = 3.0;  // In time constants.
+
+/// Stretches a signal by a factor as seen from T: pulses at a resonance then are those at another
+/// one. Pulses of that one go before them where the record begins.
+///
+/// @param scratch kMaxSwitches doubles.
+void stretch(double factor, double pulse_s, Span<double> scratch,
+             SwitchingSignal& signal) noexcept {
+  const double duration_s = signal.duration_s();
+  const Span<const double> times_s = signal.times_s();
+  const double first_s = times_s.empty() ? 0.0 : duration_s - factor * (duration_s - times_s[0]);
+  const auto room = static_cast<double>(kMaxSwitches - times_s.size());
+  const double wanted = first_s > 0.0 && factor < 1.0 ? floor(first_s / pulse_s) : 0.0;
+  std::size_t count = 0;
+  for (double before = std::min(wanted, room); before >= 1.0; before -= 1.0) {
+    const double time_s = first_s - before * pulse_s;
+    if (time_s > 0.0) {
+      scratch[count++] = time_s;
+    }
+  }
+  for (const double time_s : times_s) {
+    const double moved_s = duration_s - factor * (duration_s - time_s);
+    if (moved_s > 0.0) {
+      scratch[count++] = moved_s;
+    }
+  }
+  // Cannot fail: the times ascend inside (0, T).
+  (void)signal.set(scratch.first(count), duration_s);
+}
 
 bool is_inner(const CubePoint& point) noexcept {
   return abs(point[0]) <= kInner && abs(point[1]) <= kInner && abs(point[2]) <= kInner;
@@ -66,8 +107,11 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
     (void)model_.set_gain(estimate_.sensitivity);  // A device's sensitivity is a valid gain.
   }
   is_normal_ = draws.distribution() == Distribution::kNormal;
-  const double reach = draws.reach(is_normal_ ? kNormalReach : 1.0);
-  is_unit_ = reach == 1.0;
+  const double most = is_normal_ ? kNormalReach : 1.0;
+  scale_.start(draws, search.duration_s, most);
+  const bool has_logarithm = scale_.is_logarithm();
+  const double reach = has_logarithm ? draws.reach_without_damping(most) : draws.reach(most);
+  is_unit_ = reach == 1.0 && !has_logarithm;
   is_piece_ = false;
   has_pieces_ = false;
   is_accurate_ = false;
@@ -76,13 +120,20 @@ void EnergyBranches::start(const ModalModel& at_estimate, const MaximumEnergy& b
     axes_[a] = draws.moves(a, gain_follows);
     middle_[a] = 0.0;
     reach_[a] = reach;
-    inverse_reach_[a] = 1.0 / reach;
+  }
+  if (has_logarithm) {
+    middle_[2] = 0.5 * (scale_.low() + scale_.high());
+    reach_[2] = 0.5 * (scale_.high() - scale_.low());
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    inverse_reach_[a] = 1.0 / reach_[a];
   }
   pool_.clear();
   pool_.add(0, best.signal);
   degree_ = 0;
   terms_ = 0;
   tolerance_ = 0.0;
+  rough_part_ = 0.0;
   unsearched_ = 0;
   pending_ = 0;
   point_ = 0;
@@ -123,12 +174,13 @@ void EnergyBranches::start_piece(const EnergyBranches& whole, const CubePoint& m
   gain_follows_ = whole.gain_follows_;
   is_normal_ = whole.is_normal_;
   axes_ = whole.axes_;
-  middle_ = whole.from_point(middle);
+  scale_ = whole.scale_;
   is_unit_ = false;
   is_piece_ = true;
   is_accurate_ = false;
   corner_ = 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
+    middle_[a] = whole.middle_[a] + whole.reach_[a] * middle[a];
     reach_[a] = half[a] * whole.reach_[a];
     inverse_reach_[a] = 1.0 / reach_[a];
   }
@@ -136,6 +188,7 @@ void EnergyBranches::start_piece(const EnergyBranches& whole, const CubePoint& m
   degree_ = 0;
   terms_ = 0;
   tolerance_ = 0.0;
+  rough_part_ = 0.0;
   unsearched_ = 0;
   pending_ = 0;
   point_ = 0;
@@ -171,8 +224,8 @@ void EnergyBranches::step_seeds(const EnergyBranches& whole, const DeviceDraws& 
                                 GridWorkspace& workspace) noexcept {
   if (!is_refining_) {
     whole.pool_.load(branch_, search_.duration_s, workspace.refinement(), workspace.signal());
-    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(branch_))), draws.device_at(middle_),
-               workspace);
+    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(branch_))),
+               draws.device_at(place_at(0)), workspace);
   }
   if (!step_refinement(workspace)) {
     return;
@@ -259,7 +312,7 @@ bool EnergyBranches::is_corner(std::size_t index) const noexcept {
 
 /// The estimate or the middle, then the corners.
 DeviceDraws::Place EnergyBranches::place_at(std::size_t index) const noexcept {
-  return index == 0 ? middle_ : from_point(corner(index - 1));
+  return index == 0 ? from_point({}) : from_point(corner(index - 1));
 }
 
 /// The corners, then Halton's sequence.
@@ -278,22 +331,24 @@ CubePoint EnergyBranches::check_at(std::size_t index) const noexcept {
 }
 
 DeviceDraws::Place EnergyBranches::from_point(const CubePoint& point) const noexcept {
-  return {middle_[0] + reach_[0] * point[0], middle_[1] + reach_[1] * point[1],
-          middle_[2] + reach_[2] * point[2]};
+  return scale_.to_place({middle_[0] + reach_[0] * point[0], middle_[1] + reach_[1] * point[1],
+                          middle_[2] + reach_[2] * point[2]});
 }
 
 CubePoint EnergyBranches::to_point(const DeviceDraws::Place& place) const noexcept {
   if (is_unit_) {
     return place;
   }
-  return {inverse_reach_[0] * (place[0] - middle_[0]), inverse_reach_[1] * (place[1] - middle_[1]),
-          inverse_reach_[2] * (place[2] - middle_[2])};
+  const DeviceDraws::Place c = scale_.to_coordinates(place);
+  return {inverse_reach_[0] * (c[0] - middle_[0]), inverse_reach_[1] * (c[1] - middle_[1]),
+          inverse_reach_[2] * (c[2] - middle_[2])};
 }
 
 bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noexcept {
   constexpr double kRounding = 1e-9;
+  const DeviceDraws::Place c = scale_.to_coordinates(place);
   for (std::size_t a = 0; a < 3; ++a) {
-    if (axes_[a] && !(abs(place[a] - middle_[a]) <= reach_[a] * (1.0 + kRounding))) {
+    if (axes_[a] && !(abs(c[a] - middle_[a]) <= reach_[a] * (1.0 + kRounding))) {
       return false;
     }
   }
@@ -301,13 +356,41 @@ bool EnergyBranches::is_within_reach(const DeviceDraws::Place& place) const noex
 }
 
 double EnergyBranches::share_of_draws(std::size_t axis, double middle, double half) const noexcept {
-  if (!is_normal_) {
-    return half;
+  if (axis == 2 && scale_.is_logarithm()) {
+    const double low = scale_.distance(middle_[2] + reach_[2] * (middle - half));
+    const double high = scale_.distance(middle_[2] + reach_[2] * (middle + half));
+    return share_between(low, high);
   }
-  constexpr double kInverseRootOfHalfTurn = 0.79788456080286536;  // 2 over the root of 2 pi.
-  const double place = reach_[axis] * std::max(abs(middle) - half, 0.0);
-  const double share = kInverseRootOfHalfTurn * (reach_[axis] * half) * exp(-0.5 * place * place);
+  return is_normal_ ? share_between(reach_[axis] * (middle - half), reach_[axis] * (middle + half))
+                    : half;
+}
+
+/// The share of the draws that are so many standard deviations from the estimate, nearly.
+double EnergyBranches::share_between(double low, double high) const noexcept {
+  if (!is_normal_) {
+    return 0.5 * kInverseRoot3 * (high - low);
+  }
+  constexpr double kInverseRootOfTurn = 0.39894228040143268;  // 1 over the root of 2 pi.
+  const double nearest = low > 0.0 ? low : std::min(high, 0.0);
+  const double share = kInverseRootOfTurn * (high - low) * exp(-0.5 * nearest * nearest);
   return std::min(share, 1.0);
+}
+
+/// By the sizes of the coefficients of the third and higher powers.
+std::size_t EnergyBranches::roughest_axis() const noexcept {
+  double sums[3] = {};
+  for (std::size_t b = 0; b < pool_.count(); ++b) {
+    const double* coefficient = coefficients(b).data();
+    for (std::size_t i = degree_ + 1; i-- > 0;) {
+      for (std::size_t j = degree_ - i + 1; j-- > 0;) {
+        for (std::size_t k = degree_ - i - j + 1; k-- > 0; ++coefficient) {
+          sums[1] += j > 2 ? abs(*coefficient) : 0.0;
+          sums[2] += k > 2 ? abs(*coefficient) : 0.0;
+        }
+      }
+    }
+  }
+  return axes_[2] && (sums[2] > sums[1] || !axes_[1]) ? 2 : 1;
 }
 
 std::size_t EnergyBranches::legs_between(const Accelerometer& from,
@@ -333,6 +416,11 @@ void EnergyBranches::begin_legs(const Accelerometer& home, const Accelerometer& 
   home_ = home;
   target_ = device;
   legs_ = legs_between(home_, device);
+  if (legs_ > static_cast<std::size_t>(kMostLegs)) {
+    stretch(home_.natural_frequency_hz / device.natural_frequency_hz,
+            0.5 / device.natural_frequency_hz, workspace.refinement(), workspace.signal());
+    legs_ = 1;
+  }
   leg_ = 0;
   begin_leg(workspace);
   is_refining_ = true;
@@ -553,10 +641,11 @@ std::uint32_t EnergyBranches::needed() const noexcept {
 double EnergyBranches::deviation_of(std::size_t branch) const noexcept {
   // A unit of a place has the variance 1, or that of a uniform number within +-1.
   const double unit = is_normal_ ? 1.0 : kInverseRoot3;
+  const double units[3] = {unit, unit, scale_.is_logarithm() ? scale_.deviation() : unit};
   const CubePoint slopes = cube_slopes(degree_, coefficients(branch));
   double variance = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double slope = slopes[a] * (unit * inverse_reach_[a]);
+    const double slope = slopes[a] * (units[a] * inverse_reach_[a]);
     variance += slope * slope;
   }
   return sqrt(variance);
@@ -574,24 +663,39 @@ void EnergyBranches::end_checks() noexcept {
     return;
   }
   is_accurate_ = is_predicted();
-  accept(kAcceptedAtLast);
+  accept(accepted_at_last());
   phase_ = Phase::kReady;
+}
+
+double EnergyBranches::accepted_at_last() const noexcept {
+  if (most_switches() > kManySwitches) {
+    return kMostAccepted;
+  }
+  const double more = std::max(static_cast<double>(most_switches()) / kFewSwitches, 1.0);
+  return std::max(kAcceptedAtLast * more * more, is_piece_ ? kAcceptedInPiece : 0.0);
 }
 
 /// Says which polynomials hold, to this part of the standard deviation of their energies.
 void EnergyBranches::accept(double part) noexcept {
   tolerance_ = kAcceptedError;
+  rough_part_ = 0.0;
   for (std::size_t b = 0; b < pool_.count(); ++b) {
-    fits_[b].has_failed = !(fits_[b].error <= accepted_error(b, part));
-    if (!fits_[b].has_failed) {
-      tolerance_ = std::max(tolerance_, fits_[b].error / abs(origin_));
+    const double error = fits_[b].error;
+    fits_[b].has_failed = !(error <= accepted_error(b, part));
+    if (fits_[b].has_failed) {
+      continue;
+    }
+    tolerance_ = std::max(tolerance_, error / abs(origin_));
+    if (!(error <= accepted_error(b, kAcceptedDeviation))) {
+      rough_part_ = std::max(rough_part_, error / deviation_of(b));
     }
   }
 }
 
 bool EnergyBranches::can_raise_degree() const noexcept {
   if (is_piece_ || degree_ == kMaxCubeDegree ||
-      pool_.count() * cube_terms(degree_ + 1) > kCoefficients) {
+      pool_.count() * cube_terms(degree_ + 1) > kCoefficients ||
+      work_of_fit(degree_ + 1) > kMostWorkOfDegree) {
     return false;
   }
   bool has_hope = false;
@@ -609,8 +713,14 @@ bool EnergyBranches::can_raise_degree() const noexcept {
 
 /// In a piece of a box three nodes are enough along the sensitivity: a signal's energy is a
 /// quadratic function of it, and the signal changes little.
-CubeNodes EnergyBranches::nodes() const noexcept {
-  return CubeNodes(degree_, axes_, is_piece_ && !is_normal_ ? 3 : degree_ + 1);
+CubeNodes EnergyBranches::nodes() const noexcept { return nodes_of(degree_); }
+
+CubeNodes EnergyBranches::nodes_of(std::size_t degree) const noexcept {
+  return CubeNodes(degree, axes_, is_piece_ && !is_normal_ ? 3 : degree + 1);
+}
+
+std::size_t EnergyBranches::work_of_fit(std::size_t degree) const noexcept {
+  return nodes_of(degree).size() * pool_.count() * (most_switches() + 1);
 }
 
 void EnergyBranches::drop_low() noexcept {

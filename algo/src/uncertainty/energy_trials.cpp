@@ -13,11 +13,15 @@ namespace {
 constexpr std::size_t kWorkOfDraws = 2;
 constexpr std::size_t kWorkOfPolynomial = 2;
 constexpr std::size_t kWorkOfRefinement = 32;
-/// Of a piece: damping against f0, in parts of their ranges.
-constexpr double kNarrow = 8.0;
 /// The share of the draws in a piece. To cut it costs some 500 refinements, as much as a part of
 /// 2e5 trials in it would.
 constexpr double kWorthCutting = 1.0 / 256.0;
+/// The most refinements times switches that the first pieces, and all of them, are worth: half a
+/// second on a PC.
+constexpr std::size_t kMostWorkOfFirst = 100000;
+constexpr std::size_t kMostWorkOfPieces = 250000;
+/// From this part of the standard deviation on a polynomial of the whole ranges is worth a cut.
+constexpr double kRough = 1e-4;
 
 /// Whether two values are the same but for rounding of a place and back.
 bool is_same(double a, double b) noexcept {
@@ -68,6 +72,8 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
     branches_.expect_pieces();
   }
   pieces_used_ = 0;
+  work_of_pieces_ = 0;
+  rough_ = 0;
   pieces_begun_ = 0;
   pieces_ready_ = 0;
   piece_ = 0;
@@ -82,7 +88,7 @@ void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexc
     branches_.prepare(draws_, search, workspace);
     return;
   }
-  if (branches_.is_predicted() || branches_.notes().degree == 0) {
+  if (branches_.is_accurate() || branches_.notes().degree == 0 || !is_worth_pieces()) {
     pieces_ = Span<TrialPiece>();
     return;
   }
@@ -92,14 +98,25 @@ void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexc
   prepare_piece(workspace);
 }
 
-/// Parts of equal size along f0.
+bool EnergyTrials::is_worth_pieces() const noexcept {
+  const bool is_predicted = branches_.is_predicted();
+  const bool is_rough = branches_.rough_part() > kRough;
+  const std::size_t work = kFirstPieces * branches_.work_of_fit(EnergyBranches::kFirstDegree) /
+                           branches_.notes().branches;
+  return (!is_predicted || is_rough) && work <= kMostWorkOfFirst;
+}
+
+/// Parts of equal size along f0 or damping.
 void EnergyTrials::begin_pieces() noexcept {
   constexpr double kHalf = 1.0 / static_cast<double>(kFirstPieces);
+  first_axis_ = branches_.roughest_axis();
   for (std::size_t i = 0; i < kFirstPieces; ++i) {
     TrialPiece& piece = pieces_[i];
     piece.child = 0;
-    piece.middle = {0.0, kHalf * static_cast<double>(2 * i + 1) - 1.0, 0.0};
-    piece.half = {1.0, kHalf, 1.0};
+    piece.middle = {0.0, 0.0, 0.0};
+    piece.middle[first_axis_] = kHalf * static_cast<double>(2 * i + 1) - 1.0;
+    piece.half = {1.0, 1.0, 1.0};
+    piece.half[first_axis_] = kHalf;
     piece.parent = 0;
     piece.branches.start_piece(branches_, piece.middle, piece.half);
   }
@@ -115,6 +132,7 @@ void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
     piece.branches.prepare_piece(seeds, draws_, workspace);
     return;
   }
+  work_of_pieces_ += piece.branches.work_of_fit(EnergyBranches::kFirstDegree);
   if (is_worth_cutting(piece)) {
     cut(piece);
   }
@@ -122,7 +140,8 @@ void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
 }
 
 bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
-  if (piece.branches.is_accurate() || pieces_used_ + 2 > pieces_.size()) {
+  if (piece.branches.is_accurate() || pieces_used_ + 2 > pieces_.size() ||
+      work_of_pieces_ > kMostWorkOfPieces) {
     return false;
   }
   double share = 1.0;
@@ -133,10 +152,9 @@ bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
   return share > kWorthCutting;
 }
 
-/// Across f0, by which signals change most, unless it is narrow already.
+/// Across the axis along which the energy changes least smoothly.
 void EnergyTrials::cut(TrialPiece& piece) noexcept {
-  const bool is_narrow = kNarrow * piece.half[1] < piece.half[2];
-  piece.axis = is_narrow && branches_.axes()[2] ? 2 : 1;
+  piece.axis = piece.branches.roughest_axis();
   piece.child = pieces_used_;
   for (const double side : {-0.5, 0.5}) {
     TrialPiece& child = pieces_[pieces_used_++];
@@ -191,7 +209,13 @@ double EnergyTrials::tolerance() const noexcept {
 }
 
 BranchNotes EnergyTrials::notes() const noexcept {
+  const auto rough_part = [](const BranchNotes& so_far, const EnergyBranches& branches) {
+    const auto part = static_cast<float>(branches.rough_part());
+    return part > so_far.rough_part ? part : so_far.rough_part;
+  };
   BranchNotes notes = branches_.notes();
+  notes.rough_trials = rough_;
+  notes.rough_part = pieces_used_ == 0 ? rough_part(notes, branches_) : 0.0F;
   for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
     if (piece.child != 0) {
       continue;
@@ -201,6 +225,7 @@ BranchNotes EnergyTrials::notes() const noexcept {
       ++notes.pieces_predicted;
     }
     notes.is_crowded = notes.is_crowded || piece.branches.notes().is_crowded;
+    notes.rough_part = rough_part(notes, piece.branches);
   }
   return notes;
 }
@@ -212,7 +237,7 @@ EnergyBranches& EnergyTrials::branches_at(const DeviceDraws::Place& place) noexc
     return branches_;
   }
   const CubePoint point = branches_.to_point(place);
-  const double position = 0.5 * (point[1] + 1.0) * static_cast<double>(kFirstPieces);
+  const double position = 0.5 * (point[first_axis_] + 1.0) * static_cast<double>(kFirstPieces);
   std::size_t index = position > 0.0 ? static_cast<std::size_t>(position) : 0;
   index = index < kFirstPieces ? index : kFirstPieces - 1;
   for (std::size_t child = pieces_[index].child; child != 0; child = pieces_[index].child) {
@@ -249,6 +274,7 @@ std::size_t EnergyTrials::work() const noexcept {
 EnergyTrials EnergyTrials::share(std::uint32_t first, Span<TrialPiece> pieces) const noexcept {
   EnergyTrials share = *this;
   share.draws_.start_share(first);
+  share.rough_ = 0;
   for (std::size_t i = 0; i < pieces_used_; ++i) {
     pieces[i] = pieces_[i];
   }
@@ -258,6 +284,7 @@ EnergyTrials EnergyTrials::share(std::uint32_t first, Span<TrialPiece> pieces) c
 
 void EnergyTrials::join(const EnergyTrials& share) noexcept {
   draws_.join(share.draws_);
+  rough_ += share.rough_;
   is_exhausted_ = is_exhausted_ || share.is_exhausted_;
 }
 
@@ -314,6 +341,7 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
   branches.begin(draws_.place());
   done_ = branches.done();
   energy_ = branches.energy();
+  rough_ += done_ && draws_.is_first_time() && branches.rough_part() > 0.0 ? 1U : 0U;
   if (!done_) {
     // Seldom, and only then needed.
     branches.begin_refinement(draws_, draws_.device(), workspace);

@@ -70,6 +70,8 @@ class DeviceDraws {
   Accelerometer device() const noexcept;
   double sensitivity() const noexcept { return parameter(0); }
 
+  /// @returns Whether the trial last drawn came for the first time, after all trials before it.
+  bool is_first_time() const noexcept { return is_first_time_; }
   /// @returns How often trials were drawn again, each trial counted the first time that it comes
   ///   after all trials before it: so later passes over the trials change nothing.
   std::uint32_t redraws() const noexcept { return redraws_; }
@@ -88,6 +90,10 @@ class DeviceDraws {
   /// The farthest that all devices with all units within +- it are devices: at least 1 for the
   /// box, 0 or more for the normal distribution, at most `most`.
   double reach(double most) const noexcept;
+  /// The same, whatever the damping becomes.
+  double reach_without_damping(double most) const noexcept;
+  /// What each unit of a place moves the damping by.
+  Place units_of_damping() const noexcept { return {factor_[2][0], factor_[2][1], factor_[2][2]}; }
   /// Whether a unit moves a parameter; S is left out where a gain that follows takes it out.
   bool moves(std::size_t unit, bool without_sensitivity) const noexcept;
 
@@ -96,6 +102,7 @@ class DeviceDraws {
   Status set_covariance(const double (&covariance)[3][3]) noexcept;
   double parameter(std::size_t index) const noexcept;
   double row_sum(std::size_t parameter) const noexcept;
+  double reach_of(std::size_t parameters, double most) const noexcept;
   void draw_box() noexcept;
   void draw_normal(WichmannHill& generator) noexcept;
   bool draw_again(std::uint32_t trial) noexcept;
@@ -114,6 +121,7 @@ class DeviceDraws {
   std::uint32_t counted_ = 0;
   std::uint32_t counts_from_ = 0;
   std::uint32_t redraws_ = 0;
+  bool is_first_time_ = false;
   Distribution distribution_ = {};
 };
 

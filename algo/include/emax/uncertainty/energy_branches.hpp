@@ -13,6 +13,7 @@
 #include "emax/model/modal_model.hpp"
 #include "emax/uncertainty/branch_pool.hpp"
 #include "emax/uncertainty/cube_polynomial.hpp"
+#include "emax/uncertainty/damping_scale.hpp"
 #include "emax/uncertainty/device_draws.hpp"
 
 namespace emax {
@@ -26,6 +27,10 @@ struct BranchNotes {
   std::uint8_t pieces = 0;      ///< Parts of the ranges with branches of their own; 0 if not cut.
   std::uint8_t pieces_predicted = 0;  ///< Of them, where all branches have polynomials.
   bool is_crowded = false;            ///< A signal that might matter found no room.
+  /// Trials by polynomials that are not accurate to 1e-6 of u(E), and what those may be off by as
+  /// part of u(E).
+  std::uint32_t rough_trials = 0;
+  float rough_part = 0.0F;
 };
 
 /// The largest energy E*(S, f0, beta) of a figure within the ranges of its parameters.
@@ -38,8 +43,10 @@ struct BranchNotes {
 /// may be the largest is refined at Chebyshev nodes of the ranges, for the normal distribution up
 /// to 4 standard deviations along each axis, and becomes a polynomial of degree 4, or else 5 or 6.
 /// It is held against refinements at the corners and at 30 places inside: to 1e-10 of the energy,
-/// or to 1e-6 of its standard deviation if that is more. A branch whose polynomial fails is refined
-/// wherever it may be the largest, and so are all of them outside the nodes.
+/// or to 1e-6 of its standard deviation if that is more; what is accepted beyond that, most of it
+/// with many switches, is counted (`BranchNotes::rough_part`). Where the damping varies by much of
+/// itself, the polynomials are in its logarithm (`DampingScale`). A branch whose polynomial fails
+/// is refined wherever it may be the largest, and so are all of them outside the nodes.
 ///
 /// Nothing here knows the criterion: it is the model's. Several figures can share `DeviceDraws`.
 ///
@@ -105,6 +112,11 @@ class EnergyBranches {
 
   /// @returns What a polynomial may be off by, as part of the energy.
   double tolerance() const noexcept { return tolerance_; }
+  /// @returns What the polynomials that are not accurate but count as predicted may be off by, as
+  ///   part of the standard deviation of their energies over the draws; 0 if there are none.
+  double rough_part() const noexcept { return rough_part_; }
+  /// What refinements for polynomials cost: their number times that of switches.
+  std::size_t work_of_fit(std::size_t degree) const noexcept;
   /// The number of switches of the branch that has most.
   std::size_t most_switches() const noexcept;
   /// True if the polynomials reach as far as this place.
@@ -112,13 +124,16 @@ class EnergyBranches {
   CubePoint to_point(const DeviceDraws::Place& place) const noexcept;
   /// The share of the draws that are within `half` of a point of an axis, nearly.
   double share_of_draws(std::size_t axis, double middle, double half) const noexcept;
+  /// The axis of f0 or damping along which the polynomials need their high powers most.
+  std::size_t roughest_axis() const noexcept;
   /// The axes of the cube along which the device changes.
   const std::array<bool, 3>& axes() const noexcept { return axes_; }
   /// True if no place within reach takes a refinement.
   bool is_predicted() const noexcept { return notes().predicted == pool_.count(); }
 
   /// With `is_ready()`: true if all polynomials hold to 1e-10 of the energy or 1e-6 of its standard
-  /// deviation; those that are off by up to 1e-4 of it count as predicted only.
+  /// deviation; those that are off by up to 1e-4 of it, or more with many switches
+  /// (`rough_part()`), count as predicted only.
   bool is_accurate() const noexcept { return is_accurate_; }
 
   /// The model with the device last set.
@@ -147,6 +162,7 @@ class EnergyBranches {
     bool has_failed = false;
   };
 
+  double share_between(double low, double high) const noexcept;
   CubePoint corner(std::size_t index) const noexcept;
   DeviceDraws::Place place_at(std::size_t index) const noexcept;
   CubePoint check_at(std::size_t index) const noexcept;
@@ -177,6 +193,8 @@ class EnergyBranches {
   void end_checks() noexcept;
   bool can_raise_degree() const noexcept;
   CubeNodes nodes() const noexcept;
+  CubeNodes nodes_of(std::size_t degree) const noexcept;
+  double accepted_at_last() const noexcept;
   std::size_t checks() const noexcept { return is_piece_ ? kChecksOfPiece : kChecks; }
   void compare_branches() noexcept;
   std::uint32_t needed() const noexcept;
@@ -210,7 +228,9 @@ class EnergyBranches {
   Accelerometer target_ = {};
   double origin_ = 0.0;  // Polynomials are fitted to differences from this.
   double tolerance_ = 0.0;
-  // Polynomials hold up to `reach_` from the middle along each axis, in units of a place.
+  double rough_part_ = 0.0;
+  DampingScale scale_ = {};
+  // Polynomials hold up to `reach_` from the middle along each axis, in coordinates of the scale.
   DeviceDraws::Place middle_ = {};
   DeviceDraws::Place reach_ = {};
   DeviceDraws::Place inverse_reach_ = {};
@@ -227,7 +247,7 @@ class EnergyBranches {
   std::array<bool, 3> axes_ = {};
   bool gain_follows_ = false;
   bool is_normal_ = false;
-  bool is_unit_ = false;  // A place is a point.
+  bool is_unit_ = false;  // A place is a point of the cube.
   bool is_piece_ = false;
   bool is_accurate_ = false;
   bool has_pieces_ = false;

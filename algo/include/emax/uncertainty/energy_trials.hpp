@@ -145,6 +145,7 @@ class EnergyTrials {
   void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
   void cut(TrialPiece& piece) noexcept;
+  bool is_worth_pieces() const noexcept;
   bool is_worth_cutting(const TrialPiece& piece) const noexcept;
   EnergyBranches& asked() noexcept;
   EnergyBranches& branches_at(const DeviceDraws::Place& place) noexcept;
@@ -154,9 +155,11 @@ class EnergyTrials {
   EnergyBranches branches_ = {};
   Span<TrialPiece> pieces_;
   std::size_t pieces_used_ = 0;
+  std::size_t work_of_pieces_ = 0;
   std::size_t pieces_begun_ = 0;
   std::size_t pieces_ready_ = 0;
-  std::size_t piece_ = 0;  // Of the trial that is made, counted from 1; 0 for the whole.
+  std::size_t first_axis_ = 1;  // That the first pieces are parts of.
+  std::size_t piece_ = 0;       // Of the trial that is made, counted from 1; 0 for the whole.
   DeviceDraws draws_ = {};
   SearchSettings search_ = {};
   FixedPoint fixed_point_ = {};
@@ -164,6 +167,7 @@ class EnergyTrials {
   double scale_ = 0.0;
   double inverse_sensitivity_ = 0.0;
   std::size_t cells_ = 0;
+  std::uint32_t rough_ = 0;
   bool gain_follows_ = false;
   bool is_exhausted_ = false;
   bool done_ = false;

@@ -295,6 +295,9 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
   known.status = Status::kOk;
   known.trials = result.trials;
   known.redraws = part.trials.redraws();
+  const BranchNotes notes = part.trials.notes();
+  known.rough_trials = notes.rough_trials;
+  known.rough_part = notes.rough_part;
   known.mean_v2s = result.mean;
   known.u_v2s = result.u;
   known.symmetric = result.symmetric;

@@ -565,6 +565,7 @@ void write_monte_carlo(const EvaluationResults& results, ReportWriter& out) noex
                  result.symmetric);
   write_interval(out, is_box ? "Shortest over the box" : "Shortest interval", result.probability,
                  result.shortest);
+  write_rough_trials(results.trials.branches.rough_trials, results.trials.branches.rough_part, out);
   write_guard(results.guard, out);
   write_trial_warnings(results.trials, out);
 }

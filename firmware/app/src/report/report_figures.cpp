@@ -126,6 +126,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
     write_interval("Symmetric interval", known.symmetric, results.settings.probability, out);
     write_interval("Shortest interval", known.shortest, results.settings.probability, out);
     write_guard(known.guard, out);
+    write_rough_trials(known.rough_trials, known.rough_part, out);
   }
 }
 
@@ -254,6 +255,7 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   write_interval("Symmetric interval", known.symmetric, probability, out);
   write_interval("Shortest interval", known.shortest, probability, out);
   write_guard(known.guard, out);
+  write_rough_trials(known.rough_trials, known.rough_part, out);
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
     out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();
@@ -262,6 +264,14 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
     out.part(ReportPart::kWarning)
         .text("  WARNING: that is more than 1 %; E is not normal. Give smaller uncertainties.\n");
   }
+}
+
+void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noexcept {
+  if (trials == 0) {
+    return;
+  }
+  out.label("Polynomials").integer(trials).text(" trials may be off by up to ");
+  out.general(kPercent * static_cast<double>(part), 2).text(" % of u(E)").line();
 }
 
 }  // namespace emax::app

@@ -2,6 +2,8 @@
 // uncertainty of E.
 #pragma once
 
+#include <cstdint>
+
 #include "emax/app/evaluate/evaluation_results.hpp"
 
 #include "report_parts.hpp"
@@ -19,6 +21,11 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
 
 /// What full searches made of some of the trials.
 void write_guard(const GuardResults& guard, ReportWriter& out) noexcept;
+/// How many trials are polynomials that are off by more than 1e-6 u(E), and by how much at most;
+/// nothing if there are none.
+///
+/// @param[in] part Of u(E).
+void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noexcept;
 
 /// "+a from the start, n switches, at (ms)" and the times.
 ///

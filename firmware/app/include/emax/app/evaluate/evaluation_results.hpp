@@ -72,7 +72,9 @@ struct EnergyUncertainty {
   bool is_done = false;
   Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, there are no numbers.
   std::uint32_t trials = 0;
-  std::uint32_t redraws = 0;  ///< Draws that were no device and were made again.
+  std::uint32_t redraws = 0;       ///< Draws that were no device and were made again.
+  std::uint32_t rough_trials = 0;  ///< As in `BranchNotes`,
+  float rough_part = 0.0F;         ///< this too.
   GuardResults guard;
   double mean_v2s = 0.0;
   double u_v2s = 0.0;
