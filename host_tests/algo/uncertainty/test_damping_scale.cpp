@@ -60,7 +60,7 @@ TEST(DampingScale, ThereAndBackIsTheSamePlace) {
   ASSERT_TRUE(scale.is_logarithm());
   const DeviceDraws::Place place = {1.0, -2.0, 0.7};
   const DeviceDraws::Place back = scale.to_place(scale.to_coordinates(place));
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(back[i], place[i], 1e-12);
   }
 }
