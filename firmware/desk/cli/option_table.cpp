@@ -163,6 +163,10 @@ bool take_damping(std::string_view text, ReportOptions& options) noexcept {
 }
 
 bool take_threads(std::string_view text, ReportOptions& options) noexcept {
+  if (text == "all") {
+    options.threads = static_cast<std::uint32_t>(count_cores());
+    return true;
+  }
   return take_integer(text, options.threads) && options.threads >= 1 &&
          options.threads <= kMaxThreads;
 }
@@ -322,9 +326,9 @@ constexpr const char* kTrialsHeading = "Monte Carlo";
 
 std::vector<Option> thread_options(ReportOptions& options) {
   Builder builder(options, kTrialsHeading);
-  builder.add("threads", "N", "the number of cores", "a whole number from 1 to 64",
-              "of the trials and of the draws for the covariance of\n"
-              "the fit; no result depends on it",
+  builder.add("threads", "N|all", "all", "a whole number from 1 to 64, or all",
+              "cores for the trials and the draws for the covariance\n"
+              "of the fit; no result depends on it",
               take_threads);
   return builder.options();
 }
