@@ -51,7 +51,7 @@ struct BranchNotes {
 /// Nothing here knows the criterion: it is the model's. Several figures can share `DeviceDraws`.
 ///
 /// Memory with the default capacities: 10.7 KiB, of which the model has 2.4 (one is live at a
-/// time), the signals 4.8 (8 of up to 256 switches), the polynomials 3.3 (8 of degree 4, 7 of 5, 5
+/// time), the signals 4.8 (8 of up to 256 switches), the polynomials 2.2 (8 of degree 4, 5 of 5, 3
 /// of degree 6). Cost: 9 searches, then for each branch 125 to 343 refinements and 38 more; after
 /// that, one multiplication and one addition for each of 35 to 84 terms.
 class EnergyBranches {
@@ -151,7 +151,7 @@ class EnergyBranches {
   static constexpr std::size_t kCorners = kPlaces - 1;
   static constexpr std::size_t kChecks = kCorners + 30;
   static constexpr std::size_t kChecksOfPiece = kCorners + 12;
-  static constexpr std::size_t kCoefficients = 336;  // 8 of degree 4, 6 of 5, 4 of 6.
+  static constexpr std::size_t kCoefficients = 280;  // 8 of degree 4, 5 of 5, 3 of 6.
 
   /// What is known of a branch's polynomial.
   struct Fit {
