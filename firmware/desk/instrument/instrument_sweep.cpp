@@ -86,7 +86,7 @@ bool take_points(const JsonValue& json, SweepResults& sweep) {
     point.budget = {budget[1], budget[2], budget[3], budget[4], budget[5]};
     point.acceleration_mps2 = row[3];
     point.drive_v = row[4];
-    point.residual_percent = row[5];
+    point.residual_percent = static_cast<float>(row[5]);
     point.flagged = row[6] != 0.0;
     point.scatters = row[7] != 0.0;
     if (validate(point.point) != Status::kOk) {
