@@ -18,7 +18,7 @@ using app::SweepResults;
 using app::SweepSettings;
 
 constexpr std::size_t kRowFields = 8;
-constexpr std::size_t kBudgetFields = 6;
+constexpr std::size_t kBudgetFields = 7;
 
 // The numbers of an array; none if it is no array of that many.
 std::vector<double> numbers_in(const JsonValue& array, std::size_t count) {
@@ -83,7 +83,7 @@ bool take_points(const JsonValue& json, SweepResults& sweep) {
     SweepPoint& point = sweep.table[i];
     point.point = {points[i]["f_hz"].number(), points[i]["amplitude"].number(), row[0], row[1],
                    row[2]};
-    point.budget = {budget[1], budget[2], budget[3], budget[4], budget[5]};
+    point.budget = {budget[1], budget[2], budget[3], budget[4], budget[6]};
     point.acceleration_mps2 = row[3];
     point.drive_v = row[4];
     point.residual_percent = static_cast<float>(row[5]);
@@ -93,6 +93,11 @@ bool take_points(const JsonValue& json, SweepResults& sweep) {
       return false;
     }
   }
+  const JsonValue& shared = json["bench"]["shared"];
+  sweep.shared = {shared["skew"].number(),      shared["clock"].number(),
+                  shared["drift"].number(),     shared["corner"].number(),
+                  shared["images"].number(),    shared["leak"].number(),
+                  shared["leak_back"].number(), shared["linearity"].number()};
   sweep.point_count = points.size();
   return true;
 }

@@ -130,6 +130,7 @@ void write_common(const SweepResults& sweep, JsonWriter& json) noexcept {
   json.number("skew", shared.skew_s);
   json.number("clock", shared.clock);
   json.number("drift", shared.drift);
+  json.number("corner", shared.corner_hz);
   json.number("images", shared.images);
   json.number("leak", shared.leak);
   json.number("leak_back", shared.leak_back);
