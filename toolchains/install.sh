@@ -16,7 +16,7 @@ TEXT
 
 build_packages='cmake g++ gnuplot-nox ninja-build'
 target_packages="gcc-arm-none-eabi gcc-riscv64-unknown-elf googletest libnewlib-arm-none-eabi \
-libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-numpy qemu-system-arm qemu-system-misc"
+libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-mpmath python3-numpy qemu-system-arm qemu-system-misc"
 check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev libunicorn-dev \
 poppler-utils python3-pyvisa python3-pyvisa-py"
 

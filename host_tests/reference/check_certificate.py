@@ -4,18 +4,20 @@
     check_certificate.py CERTIFICATE      exit status 0 and the proven bound, or 1 and the reason
 
 The certificate says: every signal |x| <= a on [0, T] has E <= bound. What is believed of it: the
-model, T, a, the edges of the cells, the multipliers, the y and the tree of cases, as numbers that
-prove something or do not. What is found anew, by quadrature from `reference.py`:
+model, T, a, the edges of the cells, the multipliers and the y, as numbers that prove something or
+do not. What is found anew, with every constant enclosed in a ball (`balls.py`) or an interval
+(mpmath's `iv`), from the poles and residues of the error response k = sum of r e^(p t):
 
-1. The bounds m_n(t) of the integral over s of |d^n phi / dt^n| on a mesh, the least length of a
-   run, and from them what rounding a signal to the cells costs at most. The certificate's costs
-   must not be lower, and its runs must be impossible.
-2. The matrix of F, as Gauss-Legendre integrals of products of step responses.
-3. With the multipliers, Diag(y) - Q' for each case, which must have a Cholesky factor; that the
-   cases are all there are; and the bound.
+1. m_1(t), the integral over s of |d phi(t, s)/dt|, from above on a mesh; from it what each cell
+   costs, m_1 h^2/2. The certificate's costs must not be lower.
+2. Phi on the cells, by closed forms, each element with a radius.
+3. With the multipliers, Diag(y) - Q', less the row sums of all radii, must have a Cholesky factor
+   by Rump's criterion (BIT 46 (2006) 433): with (n + 2) 2^-52 of the trace taken off the diagonal
+   a factorisation in floating point proves that the matrix is positive semidefinite.
+4. The bound, a^2 (sum of y + sum of multipliers + sum of costs), in rational numbers.
 
-Quadrature and mesh have no enclosures here: MARGIN covers them, 0.2 % of the costs, and
-ENTRY_MARGIN the matrix. The program's own costs come from enclosures.
+What is assumed: the lemma and its proof in `algo/README.md`, IEEE arithmetic, and that NumPy,
+LAPACK and mpmath do what they say.
 """
 
 from __future__ import annotations
@@ -24,17 +26,18 @@ import argparse
 import json
 import math
 import sys
+from fractions import Fraction
 
 import numpy as np
+from mpmath import iv
 
 import reference
+from balls import RAISE, U, Ball, Undecided
 
 Array = np.ndarray
 
-MARGIN = 1.002  # On m_n and on the energy of a pulse, whose mesh errors are about 1e-4.
 MESH_RESOLUTION = 40.0  # Mesh intervals per time constant of the fastest mode.
-FACTOR_MARGIN = 5e-11  # Left out of each diagonal element, in units of 2^30 units.
-ENTRY_MARGIN = 2e-14  # Each element of the matrix is believed to this, in units of 2^30 units.
+MAX_MESH = 12000
 TRIANGLE_SIGNS = ((-1, -1, -1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 
 
@@ -47,105 +50,213 @@ def require(condition: bool, reason: str) -> None:
         raise Rejected(reason)
 
 
-# ------------------------------------------------------------------------------ step response
+# ------------------------------------------------------------------------------------ the response
 
 
-class StepResponse:
-    """H(t), the integral of k, by Chebyshev polynomials on panels."""
+class Response:
+    """Poles p and residues r of k(t) = sum of r e^(p t): intervals, and balls of them."""
 
-    DEGREE = 17
+    def __init__(self, system: reference.System) -> None:
+        sensor, order = system.sensor, system.order
+        gain = iv.mpf(system.filter.gain)
+        w0 = 2 * iv.pi * iv.mpf(sensor.f0)
+        beta = iv.mpf(sensor.beta)
+        own = iv.mpc(-beta * w0, w0 * iv.sqrt(1 - beta * beta))
+        sensor_poles = [own, self.conjugate(own)]
+        rate = 2 * iv.pi * iv.mpf(system.cutoff)
+        filter_poles = []
+        for i in range(1, order + 1):
+            angle = iv.pi * (2 * i + order - 1) / (2 * order)
+            filter_poles.append(iv.mpc(rate * iv.cos(angle), rate * iv.sin(angle)))
 
-    def __init__(self, system: reference.System, time: float) -> None:
-        self.panel = 0.5 * system.panel()
-        self.count = math.ceil(time / self.panel) + 1
-        edges = np.arange(self.count + 1) * self.panel
-        kernel = reference.Kernel(system.k, system.panel())
-        table = np.concatenate([[0.0], np.cumsum(kernel.integral(edges[:-1], edges[1:]))])
-        nodes = np.cos(math.pi * (np.arange(self.DEGREE + 1) + 0.5) / (self.DEGREE + 1))
-        starts = np.broadcast_to(edges[:-1, None], (self.count, len(nodes)))
-        stops = starts + 0.5 * self.panel * (nodes + 1.0)
-        values = table[:-1, None] + kernel.integral(starts, stops)
-        self.coefficients = np.polynomial.chebyshev.chebfit(nodes, values.T, self.DEGREE)
+        def residue(poles: list, i: int, numerator: object) -> object:
+            value = iv.mpc(numerator)
+            for j, pole in enumerate(poles):
+                if j != i:
+                    value = value / (poles[i] - pole)
+            return value
 
-    def __call__(self, t: Array) -> Array:
-        scaled = np.maximum(t, 0.0) / self.panel
-        index = np.minimum(scaled.astype(np.int64), self.count - 1)
-        u = 2.0 * (scaled - index) - 1.0
-        # Clenshaw's recursion, panel by panel.
-        one, two = np.zeros(u.shape), np.zeros(u.shape)
-        for n in range(self.DEGREE, 0, -1):
-            one, two = 2.0 * u * one - two + self.coefficients[n][index], one
-        return np.where(t > 0.0, u * one - two + self.coefficients[0][index], 0.0)
+        def value(poles: list, numerator: object, at: object) -> object:
+            result = iv.mpc(numerator)
+            for pole in poles:
+                result = result / (at - pole)
+            return result
+
+        sensor_part, filter_part = iv.mpf(sensor.S) * w0**2, rate**order
+        sensor_residues = [residue(sensor_poles, i, sensor_part) for i in range(2)]
+        filter_residues = [residue(filter_poles, i, filter_part) for i in range(order)]
+        if system.criterion == "band":
+            sensor_residues = [r * value(filter_poles, filter_part, p)
+                               for r, p in zip(sensor_residues, sensor_poles)]
+            filter_residues = [r * (value(sensor_poles, sensor_part, p) - gain)
+                               for r, p in zip(filter_residues, filter_poles)]
+        else:
+            filter_residues = [-gain * r for r in filter_residues]
+        self.poles = sensor_poles + filter_poles
+        self.residues = sensor_residues + filter_residues
+        self.p = Ball.stack([Ball.of_interval(pole) for pole in self.poles])
+        self.r = Ball.stack([Ball.of_interval(r) for r in self.residues])
+
+    @staticmethod
+    def conjugate(z: object) -> object:
+        return iv.mpc(z.real, -z.imag)
+
+    def norms(self, count: int) -> list[float]:
+        """At least the square roots of the integrals of |k^(n)|^2 over [0, infinity)."""
+        result = []
+        for n in range(count):
+            total = iv.mpf(0)
+            weights = [r * p**n for r, p in zip(self.residues, self.poles)]
+            for p, own in zip(self.poles, weights):
+                for q, other in zip(self.poles, weights):
+                    total -= (own * other / (p + q)).real
+            result.append(float(iv.sqrt(abs(total)).b) * RAISE)
+        return result
+
+    def starts(self, count: int) -> list[float]:
+        """At least |k^(n)(0)|."""
+        result = []
+        for n in range(count):
+            total = sum(((r * p**n).real for r, p in zip(self.residues, self.poles)), iv.mpf(0))
+            result.append(float(abs(total).b) * RAISE)
+        return result
 
 
 # ----------------------------------------------------------------------------------- constants
 
 
-class KernelBounds:
-    """m_0, m_1, m_2 at the points of a mesh, and the energy of pulses."""
+class SlopeBound:
+    """m_1(t) = integral over s of |f(t, s)|, f = d phi/dt, from above on [0, T].
 
-    def __init__(self, system: reference.System, step: StepResponse, time: float) -> None:
-        fastest = 2.0 * math.pi * max(system.sensor.f0, system.filter.cutoff)
-        self.count = max(3000, math.ceil(time * fastest * MESH_RESOLUTION))
-        self.h = time / self.count
-        self.time = time
-        middle = (np.arange(self.count) + 0.5) * self.h
-        # k' and k'' by differences so narrow that their error is below 1e-6.
-        narrow = min(2e-3 / fastest, 0.4 * self.h)
-        before, k, after = (system.k(middle + shift) for shift in (-narrow, 0.0, narrow))
-        slope = (after - before) / (2.0 * narrow)
-        curvature = (after - 2.0 * k + before) / narrow**2
-        first_slope = float((4.0 * system.k(np.array(narrow)) - system.k(np.array(2.0 * narrow)))
-                            / (2.0 * narrow))
-        self.integrals = self._integrals(system, (k, slope, curvature), first_slope)
-        self.steps = step(middle)
+    For s >= t, f = -integral of k(w) k'(w + s - t) up to T - s; for s <= t it is -k(T - t) k(T - s)
+    + integral of k(w) k'(w + t - s) up to T - t. f has a continuous slope, as k(0) = 0. Second
+    derivatives of f by t or s, integrated over s, are at most `curvature`: the norms of k and k'''
+    for the integral, and products of the largest |k^(n)| with integrals of |k^(2 - n)| for what the
+    moving end adds. So linear interpolation of |f| in s and in t is off by at most curvature/8
+    times the square of the step, each.
+    """
 
-    def _integrals(
-        self, system: reference.System, derivatives: tuple[Array, ...], first_slope: float
-    ) -> Array:
-        """m_n(t_i), n = 0, 1, 2, t_i = i h, by the trapezoidal rule in s, lag by lag.
+    def __init__(self, response: Response, time: float) -> None:
+        fastest = float(np.max(response.p.size()))
+        self.count = max(400, math.ceil(time * fastest * MESH_RESOLUTION))
+        require(self.count <= MAX_MESH, "T is too long for the mesh of this check")
+        norms, starts = response.norms(4), response.starts(3)
+        root = math.sqrt(time) * RAISE
+        largest = [starts[n] + root * norms[n + 1] for n in range(3)]
+        curvature = time * norms[0] * norms[3]
+        curvature += sum(largest[2 - n] * root * norms[n] for n in range(3))
+        self.step = Fraction(time) / self.count
+        step = float(self.step) * RAISE
+        self.remainder = 0.25 * curvature * step * step * (1.0 + 1e-12)
+        self.integrals = self._integrals(response, step)
 
-        With d = |s - t|, dn/dtn phi is (-1)^n times the integral of k^(n)(w + d) k(w) for s >= t
-        and of k^(n)(w) k(w + d) for s <= t, up to T, for n = 2 plus k'(0) k(d).
-        """
-        n, k = self.count, derivatives[0]
-        totals = np.zeros((3, n + 1))
-        lagged = system.k(np.arange(n + 1) * self.h)
-        for lag in range(n + 1):
-            weight = self.h * (0.5 if lag == 0 else 1.0)
-            for order, derivative in enumerate(derivatives):
-                # After cumsum, element M is the integral over [0, M h].
-                later = np.zeros(n - lag + 1)
-                np.cumsum(derivative[lag:] * k[: n - lag], out=later[1:])
-                earlier = np.zeros(n - lag + 1)
-                np.cumsum(derivative[: n - lag] * k[lag:], out=earlier[1:])
-                later *= self.h
-                earlier *= self.h
-                if order == 2:
-                    earlier += first_slope * lagged[lag]
-                # s = T - M h, t = s - lag h; then t = T - M h, s = t - lag h.
-                totals[order, : n - lag + 1] += weight * np.abs(later[::-1])
-                totals[order, lag:] += weight * np.abs(earlier[::-1])
-        return totals
+    def _integrals(self, response: Response, step: float) -> Array:
+        """By the trapezoidal rule, at each point of the mesh."""
+        n, p = self.count, response.p
+        step_ball = Ball(float(self.step), float(self.step) * U)
+        powers = (p * step_ball).exp()
+        e = self._powers(powers, n + 1)  # e^(p m step), by mode and m.
+        # U_p(tau) = sum over q of r_q (e^((p + q) tau) - 1)/(p + q).
+        held_middle = np.zeros((len(p.middle), n + 1), dtype=complex)
+        held_radius = np.zeros(held_middle.shape)
+        one = Ball(1.0)
+        for i in range(len(p.middle)):
+            weight = (response.r * (p[i] + p).inverse())[:, None]
+            held = (weight * (e * e[i : i + 1] - one)).sum(0)
+            held_middle[i], held_radius[i] = held.middle, held.radius
+        held = Ball(held_middle, held_radius)
+        k = (response.r[:, None] * e).sum(0)
+        c = (response.r * p)[:, None]
+        later = c * held  # By mode and M, s = T - M step.
+        # What a sum over modes of products may be off by, the same everywhere.
+        def largest(values: Array) -> Array:
+            return np.max(values, axis=1)
 
-    def largest(self, order: int, start: float, stop: float) -> float:
-        """The largest m_order on [start, stop], with the margin."""
-        low = max(math.floor(start / self.h), 0)
-        high = min(math.ceil(stop / self.h), self.count)
-        return MARGIN * float(np.max(self.integrals[order, low : high + 1]))
+        off = float(np.sum(largest(np.abs(later.middle)) * largest(e.radius)
+                           + largest(later.radius) * largest(e.size())))
+        off += 8.0 * (len(p.middle) + 4) * U * float(
+            np.sum(largest(later.size()) * largest(e.size())))
+        size = float(np.max(k.size()))
+        off += 2.0 * size * float(np.max(k.radius)) + 8.0 * U * size * size
+        off *= RAISE**2
+        totals = np.zeros(n + 1)
+        em, lm, km = e.middle, later.middle, k.middle.real
+        for t in range(n + 1):
+            left = n - t  # T - t in steps.
+            # s = t + m: T - s = left - m.
+            after = np.abs(np.einsum("pm,pm->m", em[:, : left + 1], lm[:, left::-1]).real)
+            # s = t - m: T - s = left + m.
+            before = np.abs(np.einsum("p,pm->m", lm[:, left], em[:, : t + 1]).real
+                            - km[left] * km[left : n + 1])
+            total = np.sum(after) - 0.5 * (after[0] + after[-1])
+            total += np.sum(before) - 0.5 * (before[0] + before[-1])
+            totals[t] = total * (1.0 + 8.0 * n * U) + (n + 2) * off
+        return totals * step * RAISE**2
 
-    def pulse_energies(self, left: float, widths: Array) -> Array:
-        """At least the energies of unit pulses of these numbers of mesh steps, `left` before T."""
-        last = int(left / self.h)
-        rest = left / self.h - last  # Of the mesh step that T cuts.
-        energies = []
-        for width in widths:
-            y = self.steps[: last + 1].copy()
-            y[width:] -= self.steps[: max(len(y) - width, 0)]
-            energy = float(y[:last] @ y[:last])
-            energy += rest * float(y[last] ** 2) if last < len(y) else 0.0
-            energies.append(self.h * energy / MARGIN)
-        return np.array(energies)
+    @staticmethod
+    def _powers(base: Ball, count: int) -> Ball:
+        """base^m, m below count, in the second dimension, by doubling."""
+        result = Ball(np.ones((len(base.middle), 1)))
+        factor = base[:, None]
+        while result.middle.shape[1] < count:
+            more = result * factor
+            result = Ball(np.concatenate([result.middle, more.middle], axis=1),
+                          np.concatenate([result.radius, more.radius], axis=1))
+            factor = factor * factor
+        return result[:, :count]
+
+    def over(self, start: float, stop: float) -> float:
+        """At least m_1 anywhere on [start, stop]."""
+        low = max(math.floor(Fraction(start) / self.step), 0)
+        high = min(math.ceil(Fraction(stop) / self.step), self.count)
+        return (float(np.max(self.integrals[low : high + 1])) + self.remainder) * RAISE
+
+
+def cell_matrix(response: Response, edges: Array) -> tuple[Array, Array]:
+    """Phi on the cells and the radii of its elements, by closed forms.
+
+    For cells i < j, Phi_ij = sum over p of early_p(i) e^(p d) late_p(j), d from the end of i to the
+    start of j: early is the integral of e^(p (end - t)) over i, late that of r_p e^(p (s - start))
+    U_p(T - s) over j. The powers come from cell to cell, so they only decay.
+    """
+    p, r = response.p, response.r
+    modes, cells = len(p.middle), len(edges) - 1
+    width = np.diff(edges)  # Exact or rounded once.
+    widths = Ball(width, U * width)[:, None]
+    left = edges[-1] - edges
+    to_end = Ball(left, U * np.abs(left))[:, None]  # T - edge.
+    row = p[None, :]
+    decay = (row * widths).exp()
+    end = (row * to_end).exp()
+    one = Ball(1.0)
+    early = (decay - one) * row.inverse()
+    late_middle = np.zeros((cells, modes), dtype=complex)
+    late_radius = np.zeros((cells, modes))
+    diagonal = Ball(np.zeros(cells))
+    for i in range(modes):
+        own, c = p[i], r * (p[i] + p).inverse()
+        c = c[None, :]
+        begin = end[:-1, i : i + 1]
+        held = (c * (begin * end[1:] * early - early[:, i : i + 1])).sum(1)
+        part = r[i] * held
+        late_middle[:, i], late_radius[:, i] = part.middle, part.radius
+        # (1 - e^(-q w))/q e^((p+q) tau) = e^(p tau) e^(q (tau - w)) early_q, and for p + q too.
+        both = (decay * decay[:, i : i + 1] - one) * (row + own).inverse()
+        ends = begin * end[1:] * early - end[1:] * end[1:, i : i + 1] * both
+        inner = (c * (ends - (early[:, i] - widths[:, 0])[:, None])).sum(1)
+        diagonal = diagonal + r[i] * own.inverse() * inner * Ball(2.0)
+    late = Ball(late_middle, late_radius)
+    matrix = np.diag(diagonal.middle.real)
+    radius = np.diag(diagonal.radius)
+    reach = early[:1]  # early_p(i) e^(p d) of all i < j.
+    for j in range(1, cells):
+        column = (reach * late[j : j + 1]).sum(1)
+        matrix[:j, j] = matrix[j, :j] = column.middle.real
+        radius[:j, j] = radius[j, :j] = column.radius
+        moved = reach * decay[j : j + 1]
+        reach = Ball(np.concatenate([moved.middle, early.middle[j : j + 1]]),
+                     np.concatenate([moved.radius, early.radius[j : j + 1]]))
+    return matrix, radius
 
 
 # ------------------------------------------------------------------------------- the certificate
@@ -155,235 +266,109 @@ class Certificate:
     """A file of `emax certify`, with the plain faults of its form found."""
 
     def __init__(self, data: dict) -> None:
+        require(isinstance(data, dict) and "certificate" in data, "not a certificate")
+        require(data["certificate"] != 1,
+                "a certificate of format 1, from before version 2 of the proof; "
+                "make a new one with emax certify")
+        require(data["certificate"] == 2, "a certificate of a format that is not known here")
         try:
             model, limits = data["model"], data["signal"]
             self.system = reference.System(
-                reference.Accelerometer(model["S"], model["f0"], model["beta"]),
-                model["order"], model["cutoff"], model["gain"],
+                reference.Accelerometer(float(model["S"]), float(model["f0"]),
+                                        float(model["beta"])),
+                int(model["order"]), float(model["cutoff"]), float(model["gain"]),
                 model.get("criterion", "ise"))
             self.time, self.limit = float(limits["T"]), float(limits["a"])
             self.energy = float(data["energy"]["E"])
             self.switches = [float(t) for t in data["energy"]["switch_times"]]
             self.bound = float(data["bound"])
             self.edges = np.array(data["edges"], dtype=float)
-            self.free_from = int(data["free_from"])
-            self.constant = float(data["constant"])
-            self.switch_cost = np.array(data["switch_cost"], dtype=float)
-            self.run_end = np.array(data["run_end"], dtype=int)
+            self.costs = np.array(data["costs"], dtype=float)
             self.unit = float(data["unit"])
             self.multipliers = np.array(data["multipliers"], dtype=np.int64).reshape(-1, 5)
-            self.tree = data["tree"]
+            self.y = np.array(data["y"], dtype=np.int64)
         except (KeyError, TypeError, ValueError) as error:
             raise Rejected(f"not a certificate: {error!r}") from error
         self.cells = len(self.edges) - 1
         self.check_form()
 
     def check_form(self) -> None:
+        require(self.system.criterion in ("ise", "band"), "a criterion that is not covered")
         require(self.system.order >= 2, "a filter of order 1 or less")
         require(self.cells >= 2 and self.edges[0] == 0.0 and self.edges[-1] == self.time
                 and bool(np.all(np.diff(self.edges) > 0.0)), "edges do not go from 0 to T")
-        require(1 <= self.free_from <= self.cells, "free_from is not an edge")
-        require(len(self.switch_cost) == self.cells and len(self.run_end) == self.cells,
-                "switch_cost or run_end do not fit the edges")
-        require(bool(np.all(self.switch_cost >= 0.0)), "a negative cost")
-        require(self.unit > 0.0 and self.limit > 0.0, "unit or limit not above 0")
-
-    def excluded(self) -> tuple[Array, Array, Array]:
-        """All cells i < j < k such that v_i = v_k and v_j different needs too short a run."""
-        triples = []
-        for i in range(self.cells - 2):
-            for k in range(i + 2, self.cells):
-                if self.run_end[i + 1] <= k:
-                    break
-                for j in range(i + 1, k):
-                    if self.run_end[j] <= k:
-                        break
-                    triples.append((i, j, k))
-        table = np.array(triples, dtype=np.int64).reshape(-1, 3)
-        return table[:, 0], table[:, 1], table[:, 2]
+        require(self.costs.shape == (self.cells,) and self.y.shape == (self.cells,),
+                "costs or y do not fit the edges")
+        require(self.limit > 0.0 and math.isfinite(self.limit), "the limit is not above 0")
+        require(self.unit > 0.0 and math.frexp(self.unit)[0] == 0.5, "unit is no power of two")
+        require(bool(np.all(self.y >= 0)), "a negative y")
+        i, j, k, kind, units = self.multipliers.T
+        require(bool(np.all((0 <= i) & (i < j) & (j < k) & (k < self.cells))),
+                "a multiplier of cells that are not i < j < k")
+        require(bool(np.all((0 <= kind) & (kind <= 3))), "a multiplier of no known kind")
+        require(bool(np.all(units >= 0)), "a negative multiplier of an inequality")
+        largest = max(int(np.sum(units)), int(np.sum(self.y)))
+        require(largest < 2**51, "multipliers or y are too large for this check")
 
 
-def check_costs(certificate: Certificate, bounds: KernelBounds) -> None:
-    """The costs of rounding, and that the runs said to be impossible are."""
-    edges, free = certificate.edges, certificate.free_from
-    middle = 0.5 * (edges[:-1] + edges[1:])  # Of cell e, after edge e.
-
-    def half_cell(start: float, stop: float) -> float:
-        return 2.0 * bounds.largest(1, start, stop) * (stop - start) ** 2
-
-    for e in range(1, free):
-        cost = max(half_cell(middle[e - 1], edges[e]), half_cell(edges[e], middle[e]))
-        require(certificate.switch_cost[e] >= cost, f"the cost of a switch at edge {e} is too low")
-        end = int(certificate.run_end[e])
-        require(e < end <= free, f"run_end of edge {e} is out of range")
-        longest = middle[end - 1] - middle[e - 1]
-        widths = np.arange(1, math.ceil(longest / bounds.h) + 1)
-        energies = bounds.pulse_energies(bounds.time - middle[e], widths)
-        for width, energy in zip(widths * bounds.h, energies):
-            curvature = bounds.largest(2, middle[e - 1], middle[e] + width)
-            require(energy > curvature * width**3 / 12.0,
-                    f"runs from edge {e} may be as short as {1e6 * width:.2f} us")
-    constant = half_cell(0.0, middle[0]) + half_cell(middle[free - 1], edges[free])
-    for cell in range(free, certificate.cells):
-        start, stop = edges[cell], edges[cell + 1]
-        width = stop - start
-        constant += width * min(2.0 * bounds.largest(0, start, stop),
-                                width * bounds.largest(1, start, stop))
-    require(certificate.constant >= constant, "the constant for the last cells is too low")
+def check_costs(certificate: Certificate, slope: SlopeBound) -> None:
+    for cell, (start, stop) in enumerate(zip(certificate.edges[:-1], certificate.edges[1:])):
+        width = Fraction(float(stop)) - Fraction(float(start))
+        least = Fraction(slope.over(float(start), float(stop))) * width * width / 2
+        require(Fraction(float(certificate.costs[cell])) >= least,
+                f"the cost of cell {cell} is too low")
 
 
-def cell_matrix(certificate: Certificate, step: StepResponse) -> Array:
-    """Phi on the cells: integrals of products of the responses to single cells."""
-    edges = certificate.edges
-    nodes, weights = reference.gauss_legendre(10)
-    matrix = np.zeros((certificate.cells, certificate.cells))
-    for chunk in np.array_split(np.arange(certificate.cells), max(1, certificate.cells // 64)):
-        widths = edges[chunk + 1] - edges[chunk]
-        t = (edges[chunk][:, None] + widths[:, None] * nodes).ravel()
-        root = np.sqrt((widths[:, None] * weights).ravel())
-        responses = root[:, None] * -np.diff(step(t[:, None] - edges[None, :]), axis=1)
-        matrix += responses.T @ responses
-    return matrix
-
-
-def check_matrix(certificate: Certificate, matrix: Array) -> None:
-    """Energies of two patterns against the integral over time of the squared output."""
-    generator = np.random.default_rng(1)
-    for pattern in (np.ones(certificate.cells),
-                    reference.sign_pattern(generator.standard_normal(certificate.cells))):
-        switches = certificate.edges[np.flatnonzero(np.diff(pattern)) + 1]
-        energy = reference.switching_energy(certificate.system, list(switches), certificate.time,
-                                            1.0)
-        mine = float(pattern @ matrix @ pattern)
-        require(abs(energy - mine) <= 1e-11 * energy, "the matrix of the check is inaccurate")
-
-
-def apply_multipliers(certificate: Certificate, matrix: Array) -> tuple[Array, float]:
-    """Q' and the sum of the multipliers."""
-    result = matrix.copy()
+def check_slack(certificate: Certificate, matrix: Array, radius: Array) -> None:
+    """Diag(y) - Q' is positive semidefinite, Q' = Phi - Diag(costs) - multipliers."""
     i, j, k, kind, units = certificate.multipliers.T
-    require(bool(np.all((0 <= i) & (i < j) & (j < k) & (k < certificate.cells))),
-            "a multiplier of cells that are not i < j < k")
-    require(bool(np.all((0 <= kind) & (kind <= 4))), "a multiplier of no known kind")
-    require(bool(np.all((units >= 0) | (kind == 4))), "a negative multiplier of an inequality")
-    excluded = set(zip(*(index.tolist() for index in certificate.excluded())))
-    free = certificate.multipliers[kind == 4]
-    require(all((a, b, c) in excluded for a, b, c, _, _ in free.tolist()),
-            "a multiplier for a run that may exist")
-    signs = np.array(TRIANGLE_SIGNS + (TRIANGLE_SIGNS[3],))[kind]
-    half = 0.5 * certificate.unit * units
-    for column, (row_index, column_index) in enumerate(((i, j), (j, k), (i, k))):
-        np.subtract.at(result, (row_index, column_index), half * signs[:, column])
-        np.subtract.at(result, (column_index, row_index), half * signs[:, column])
-    return result, certificate.unit * int(np.sum(units))
+    cells = certificate.cells
+    signs = np.array(TRIANGLE_SIGNS)[kind]
+    doubled = np.zeros((cells, cells), dtype=np.int64)  # In half units; whole numbers are exact.
+    for column, (first, second) in enumerate(((i, j), (j, k), (i, k))):
+        np.add.at(doubled, (first, second), units * signs[:, column])
+        np.add.at(doubled, (second, first), units * signs[:, column])
+    doubled += np.diag(2 * certificate.y)
+    exact = 0.5 * certificate.unit * doubled  # Below 2^53 half units.
+    costs = np.diag(certificate.costs)
+    slack = (exact - matrix) + costs
+    off = radius + 4.0 * U * (np.abs(exact) + np.abs(matrix) + costs)
+    slack -= np.diag(np.sum(off, axis=1) * (1.0 + 4.0 * cells * U) * RAISE)
+    diagonal = np.diag(slack)
+    require(bool(np.all(diagonal > 0.0)), "Diag(y) - Q' is not positive definite")
+    rump = (cells + 4) * 2.0 * 2.0**-52 * float(np.sum(diagonal))
+    slack[np.diag_indices(cells)] -= rump + 8.0 * U * np.abs(diagonal)
+    try:
+        np.linalg.cholesky(slack)
+    except np.linalg.LinAlgError as error:
+        raise Rejected("Diag(y) - Q' is not positive definite") from error
 
 
-class Tree:
-    """The cases: walked from the root, every sign pattern is in one of them."""
-
-    def __init__(self, certificate: Certificate, matrix: Array, plain: Array, total: float) -> None:
-        self.certificate, self.matrix, self.plain, self.total = certificate, matrix, plain, total
-        self.excluded = certificate.excluded()
-        self.scale = certificate.unit * 2.0**30
-        self.largest = -math.inf
-        self.leaves = 0
-
-    def walk(self) -> None:
-        root = np.zeros(self.certificate.cells, dtype=np.int8)
-        root[0] = 1  # F(v) = F(-v).
-        open_nodes, seen = [(0, root)], set()
-        while open_nodes:
-            number, signs = open_nodes.pop()
-            require(isinstance(number, int) and 0 <= number < len(self.certificate.tree),
-                    "a node of the tree is missing")
-            require(number not in seen, "a node of the tree occurs twice")
-            seen.add(number)
-            node = self.certificate.tree[number]
-            possible = self.propagate(signs)
-            if not possible:
-                continue
-            if "y" in node:
-                self.check_leaf(number, signs, node["y"])
-                continue
-            require("cell" in node and "plus" in node and "minus" in node,
-                    f"node {number} of the tree is neither a case nor a split, and not impossible")
-            cell = int(node["cell"])
-            require(0 <= cell < self.certificate.cells, f"node {number} splits by no cell")
-            for side, child in ((1, node["plus"]), (-1, node["minus"])):
-                if signs[cell] == -side:
-                    continue
-                fixed = signs.copy()
-                fixed[cell] = side
-                open_nodes.append((child, fixed))
-        require(self.leaves > 0, "no case")
-
-    def propagate(self, signs: Array) -> bool:
-        """What follows from the fixed signs; False if they need too short a run."""
-        i, j, k = self.excluded
-        while True:
-            first, middle, last = signs[i], signs[j], signs[k]
-            ends = (first != 0) & (first == last)
-            if np.any(ends & (middle == -first)):
-                return False
-            inner = ends & (middle == 0)
-            right = (first != 0) & (middle == -first) & (last == 0)
-            left = (last != 0) & (middle == -last) & (first == 0)
-            if not (np.any(inner) or np.any(right) or np.any(left)):
-                return True
-            # One rule at a time, so that two of them never write different signs unseen.
-            if np.any(inner):
-                signs[j[inner]] = first[inner]
-            elif np.any(right):
-                signs[k[right]] = middle[right]
-            else:
-                signs[i[left]] = middle[left]
-
-    def check_leaf(self, number: int, signs: Array, y: list[int]) -> None:
-        fixed, free = np.flatnonzero(signs), np.flatnonzero(signs == 0)
-        require(len(y) == 1 + len(free), f"node {number} has {len(y)} y for {1 + len(free)} cells")
-        basis = np.zeros((len(signs), 1 + len(free)))
-        basis[fixed, 0] = signs[fixed]
-        basis[free, 1 + np.arange(len(free))] = 1.0
-        duals = self.certificate.unit * np.array(y, dtype=float)
-        self.leaves += 1
-        self.largest = max(self.largest, float(np.sum(duals)))
-        if len(free) == 0:
-            value = float(signs @ self.plain @ signs) - self.total
-            require(duals[0] >= value, f"node {number}: the pattern has more energy than y says")
-            return
-        slack = np.diag(duals) - basis.T @ self.matrix @ basis
-        margin = (FACTOR_MARGIN + ENTRY_MARGIN * len(signs)) * self.scale
-        margin += 2.0**-50 * len(y) * float(np.sum(np.abs(duals)))
-        slack -= margin * np.eye(len(y))
-        try:
-            np.linalg.cholesky(slack)
-        except np.linalg.LinAlgError as error:
-            raise Rejected(f"node {number}: Diag(y) - Q' is not positive definite") from error
+def proven_bound(certificate: Certificate) -> Fraction:
+    units = int(np.sum(certificate.y)) + int(np.sum(certificate.multipliers[:, 4]))
+    total = units * Fraction(certificate.unit)
+    total += sum((Fraction(float(cost)) for cost in certificate.costs), Fraction(0))
+    return Fraction(certificate.limit) ** 2 * total
 
 
 def check(data: dict) -> tuple[Certificate, float]:
-    """Returns the certificate and the bound that it proves, or raises Rejected."""
+    """Returns the certificate and its bound if that is proven, or raises Rejected."""
     certificate = Certificate(data)
-    step = StepResponse(certificate.system, certificate.time)
-    check_costs(certificate, KernelBounds(certificate.system, step, certificate.time))
-    plain = cell_matrix(certificate, step)
-    check_matrix(certificate, plain)
-    cost = certificate.switch_cost[1:]
-    edge = np.arange(1, certificate.cells)
-    plain[edge - 1, edge] -= 0.25 * cost
-    plain[edge, edge - 1] -= 0.25 * cost
-    constant = certificate.constant + 0.5 * float(np.sum(cost))
-    matrix, total = apply_multipliers(certificate, plain)
-    tree = Tree(certificate, matrix, plain, total)
-    tree.walk()
-    proven = certificate.limit**2 * (tree.largest + total + constant)
-    require(proven <= certificate.bound * (1.0 + 1e-9),
-            f"it says {certificate.bound:.9g} V^2 s, but proves {proven:.9g} V^2 s only")
+    proven = proven_bound(certificate)
+    require(proven <= Fraction(certificate.bound),
+            f"it says {certificate.bound:.12g} V^2 s, but proves {float(proven):.12g} V^2 s only")
+    try:
+        response = Response(certificate.system)
+        check_costs(certificate, SlopeBound(response, certificate.time))
+        matrix, radius = cell_matrix(response, certificate.edges)
+    except (Undecided, ZeroDivisionError) as error:
+        raise Rejected(f"not decided: {error}") from error
+    check_slack(certificate, matrix, radius)
     reached = reference.switching_energy(certificate.system, certificate.switches,
                                          certificate.time, certificate.limit)
     require(abs(reached - certificate.energy) <= 1e-9 * reached,
             "its signal does not have the energy that it says")
-    return certificate, max(proven, certificate.bound)
+    return certificate, certificate.bound
 
 
 def main() -> int:

@@ -1,48 +1,43 @@
-// Multipliers by mixing sweeps and gradient steps, and y with its factorisation.
+// A certificate from its grid to its bound: gradient steps on the multipliers, y, the
+// factorisation.
 #include "emax/bound/energy_certificate.hpp"
 
 #include <limits>
 
 #include "emax/base/elementary.hpp"
 
-#include "certificate_vectors.hpp"
 #include "violated_triangles.hpp"
 
 namespace emax {
 namespace {
 
+constexpr std::size_t kRank = kCertificateRank;
+constexpr double kUnitsPerOne = 1073741824.0;  // 2^30
 /// Costs are this much larger than what has been shown, so that a check that finds them by a mesh
 /// of its own confirms them.
 constexpr double kCostMargin = 1.02;
 /// Of the scaled matrix: what has to be left on the diagonal when it is factorised. The rounding of
-/// a factorisation of 640 cells is below 640^2 times 2^-53 times the largest y, 5e-11.
+/// a factorisation of 1000 cells is below 1000^2 times 2^-53 times the largest y, 1.2e-10.
 constexpr double kFactorMargin = 2e-10;
-constexpr std::uint32_t kIterationsPerSearch = 40;
 constexpr double kFirstDecay = 0.9;
 constexpr double kSecondDecay = 0.99;
-constexpr double kFirstStep = 0.005;
-constexpr double kLastStep = 1e-5;
-/// Of the time for multipliers; then none are added, and the steps shorten further.
-constexpr double kSearchShare = 0.7;
+constexpr double kFirstStep = 0.001;
+constexpr double kLastStep = 1e-6;
 constexpr double kDisturbance = 1e-4;
-constexpr std::size_t kRootSweeps = 1500;
+/// Sweeps end when 16 of them change nothing by more than this, relative.
+constexpr double kSettled = 1e-12;
+constexpr std::size_t kLastSweeps = 5000;
+/// Of the augmented Lagrangian, in units of the mean diagonal.
+constexpr double kPenalty = 0.5;
 /// In the table of keys; others are a multiplier's number plus one.
 constexpr std::uint32_t kNoEntry = 0;
 
-/// Pseudo-random unit vectors, the same every time.
-void set_vectors(double* vectors, std::size_t count) noexcept {
+/// Pseudo-random numbers within +-1/2, the same every time.
+void set_numbers(double* numbers, std::size_t count) noexcept {
   std::uint32_t state = 12345;
   for (std::size_t i = 0; i < count; ++i) {
-    double square = 0.0;
-    for (std::size_t r = 0; r < kRank; ++r) {
-      state = state * 1664525u + 1013904223u;
-      const double value = static_cast<double>(state >> 8) / 16777216.0 - 0.5;
-      vectors[i * kRank + r] = value;
-      square += value * value;
-    }
-    for (std::size_t r = 0; r < kRank; ++r) {
-      vectors[i * kRank + r] /= sqrt(square);
-    }
+    state = state * 1664525u + 1013904223u;
+    numbers[i] = static_cast<double>(state >> 8) / 16777216.0 - 0.5;
   }
 }
 
@@ -68,21 +63,17 @@ double power_of_two_above(double value) noexcept {
 }
 
 std::uint32_t key_of(std::size_t i, std::size_t j, std::size_t k, std::size_t kind) noexcept {
-  return static_cast<std::uint32_t>((((i * 641 + j) * 641 + k) * 4 + kind) * 2654435761u);
+  return static_cast<std::uint32_t>((((i * 1009 + j) * 1009 + k) * 4 + kind) * 2654435761u);
 }
 
 }  // namespace
 
 Status EnergyCertificate::take_workspace(const CertificateWorkspace& workspace,
                                          std::size_t intervals) noexcept {
-  const std::size_t cells = grid_.cells;
-  const std::size_t leaves = workspace.signs.size() / cells;
   const std::size_t hash = workspace.hash.size();
-  max_leaves_ = leaves < kMaxLeaves ? leaves : kMaxLeaves;
-  const bool is_enough =
-      max_leaves_ > 0 && workspace.duals.size() >= max_leaves_ * cells &&
-      workspace.nodes.size() >= 2 && hash >= 2 * workspace.multipliers.size() && hash > 0 &&
-      workspace.numbers.size() >= certificate_numbers(cells, intervals, max_leaves_);
+  const bool is_enough = workspace.duals.size() >= grid_.cells && !workspace.violated.empty() &&
+                         hash >= 2 * workspace.multipliers.size() && hash > 0 &&
+                         workspace.numbers.size() >= certificate_numbers(grid_.cells, intervals);
   if (!is_enough || (hash & (hash - 1)) != 0) {
     return Status::kBufferTooSmall;
   }
@@ -91,9 +82,10 @@ Status EnergyCertificate::take_workspace(const CertificateWorkspace& workspace,
 }
 
 Status EnergyCertificate::start(const ModalModel& model, double duration_s, std::size_t cells,
+                                Span<const double> switches_s,
                                 const CertificateWorkspace& workspace) noexcept {
   *this = {};
-  Status status = lay_out_cells(model, duration_s, cells, grid_);
+  Status status = lay_out_cells(duration_s, cells, switches_s, grid_);
   if (status != Status::kOk) {
     return status;
   }
@@ -129,18 +121,15 @@ void EnergyCertificate::prepare() noexcept {
     kernel_.step();
     return;
   }
-  fill_costs(*model_, kernel_, kCostMargin, grid_);
+  fill_costs(kernel_, kCostMargin, grid_);
   // The mesh of the kernel is no longer needed; its place is taken.
   lay_out_memory();
   const std::size_t cells = grid_.cells;
   fill_certificate_phi(*model_, grid_, Span<double>(phi_, cells * cells),
-                       Span<double>(columns_, 4 * kMaxModes * cells));
-  rounding_constant_ = grid_.constant;
-  for (std::size_t edge = 1; edge < cells; ++edge) {
-    const double cost = grid_.switch_cost[edge];
-    phi_[(edge - 1) * cells + edge] -= 0.25 * cost;
-    phi_[edge * cells + edge - 1] -= 0.25 * cost;
-    rounding_constant_ += 0.5 * cost;
+                       Span<double>(scratch_ + cells * cells, 4 * kMaxModes * cells));
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    phi_[cell * cells + cell] -= grid_.costs[cell];
+    costs_ += grid_.costs[cell];
   }
   begin();
 }
@@ -156,51 +145,52 @@ void EnergyCertificate::lay_out_memory() noexcept {
   phi_ = take(cells * cells);
   matrix_ = take(cells * cells);
   scratch_ = take(cells * cells);
-  merged_ = take(cells * cells);
-  vectors_ = take(2 * kRank * cells);
+  vectors_ = take(kRank * cells);
+  columns_ = take(kRank * cells);
   dual_ = take(cells);
-  columns_ = take(4 * kMaxModes * cells);
-  leaf_vectors_ = take(max_leaves_ * kRank * cells);
+  for (double** const own : {&point_, &trial_, &gradient_, &next_gradient_, &direction_}) {
+    *own = take(unknowns());
+  }
+  for (std::size_t i = 0; i < kHistory; ++i) {
+    history_.steps[i] = take(unknowns());
+    history_.changes[i] = take(unknowns());
+  }
 }
 
-// With phi_ filled: the scale, from a first relaxation, and the multipliers of runs.
+// With phi_ filled: the scale, from a first relaxation.
 void EnergyCertificate::begin() noexcept {
   const std::size_t cells = grid_.cells;
-  set_vectors(vectors_, cells);
+  for (std::uint32_t& entry : memory_.hash) {
+    entry = kNoEntry;
+  }
+  set_numbers(point_, unknowns());
+  normalise_point();
+  take_vectors(point_);
+  set_matrix();
   double value = 0.0;
   for (int i = 0; i < 20; ++i) {
-    value = sweep(phi_, cells, vectors_);
-  }
-  for (std::size_t i = 0; i < cells; ++i) {
-    value += abs(phi_[i * cells + i]);
+    value = sweep();
   }
   scale_ = power_of_two_above(value);
   unit_ = scale_ / kUnitsPerOne;
   mean_diagonal_ = value / scale_ / static_cast<double>(cells);
+  costs_ /= scale_;
+  penalty_ = kPenalty * mean_diagonal_;
   for (std::size_t i = 0; i < cells * cells; ++i) {
     phi_[i] /= scale_;
-    matrix_[i] = phi_[i];
   }
-  add_run_multipliers();
+  for (std::size_t i = 0; i < cells; ++i) {
+    point_[kRank * cells + i] = 0.1;
+    for (std::size_t r = 0; r < kRank; ++r) {
+      point_[i * kRank + r] = vectors_[i * kRank + r];
+    }
+  }
+  estimate_ = value + costs_ * scale_;
   ready_ = true;
 }
 
-void EnergyCertificate::add_run_multipliers() noexcept {
-  for (std::uint32_t& entry : memory_.hash) {
-    entry = kNoEntry;
-  }
-  for (std::size_t i = 0; i + 2 < grid_.cells; ++i) {
-    for (std::size_t k = i + 2; k < grid_.cells && grid_.no_run_between(i, i + 1, k); ++k) {
-      (void)add_multiplier(i, i + 1, k, 3, true);
-      if (k > i + 2 && grid_.no_run_between(i, k - 1, k)) {
-        (void)add_multiplier(i, k - 1, k, 3, true);
-      }
-    }
-  }
-}
-
 bool EnergyCertificate::add_multiplier(std::size_t i, std::size_t j, std::size_t k,
-                                       std::size_t kind, bool is_free) noexcept {
+                                       std::size_t kind) noexcept {
   if (multiplier_count_ == memory_.multipliers.size()) {
     return false;
   }
@@ -219,13 +209,13 @@ bool EnergyCertificate::add_multiplier(std::size_t i, std::size_t j, std::size_t
   added.j = static_cast<std::uint16_t>(j);
   added.k = static_cast<std::uint16_t>(k);
   added.kind = static_cast<std::uint8_t>(kind);
-  added.is_free = is_free;
   memory_.hash[slot] = static_cast<std::uint32_t>(multiplier_count_);
   return true;
 }
 
-// Those that have come back to zero; the table of keys is made anew.
+// Those that are zero and hold by far; the table of keys is made anew.
 void EnergyCertificate::forget_unused_multipliers() noexcept {
+  constexpr float kIdle = -0.3F;
   const std::size_t count = multiplier_count_;
   for (std::uint32_t& entry : memory_.hash) {
     entry = kNoEntry;
@@ -233,11 +223,20 @@ void EnergyCertificate::forget_unused_multipliers() noexcept {
   multiplier_count_ = 0;
   for (std::size_t n = 0; n < count; ++n) {
     const TriangleMultiplier kept = memory_.multipliers[n];
-    const bool is_idle = !kept.is_free && !(kept.value > 0.0F) && kept.mean < 0.0F;
-    if (!is_idle && add_multiplier(kept.i, kept.j, kept.k, kept.kind, kept.is_free)) {
+    const bool is_idle = !(kept.value > 0.0) && kept.mean < kIdle;
+    if (!is_idle && add_multiplier(kept.i, kept.j, kept.k, kept.kind)) {
       memory_.multipliers[multiplier_count_ - 1] = kept;
     }
   }
+}
+
+/// s . X - 1 with the products in scratch_.
+double EnergyCertificate::slope(const TriangleMultiplier& multiplier) const noexcept {
+  const std::size_t cells = grid_.cells;
+  const std::int8_t* const signs = kTriangleSigns[multiplier.kind];
+  const double* const row = scratch_ + multiplier.i * cells;
+  return signs[0] * row[multiplier.j] + signs[1] * scratch_[multiplier.j * cells + multiplier.k] +
+         signs[2] * row[multiplier.k] - 1.0;
 }
 
 // matrix_ loses amount * s / 2 at each of the three pairs.
@@ -259,129 +258,105 @@ void EnergyCertificate::apply(const TriangleMultiplier& multiplier, double amoun
   matrix_[k * cells + i] -= ik;
 }
 
-double EnergyCertificate::sweep(const double* matrix, std::size_t size, double* vectors) noexcept {
+// The mixing method: each vector in turn takes its best place, of length 1 or less.
+double EnergyCertificate::sweep() noexcept {
+  const std::size_t cells = grid_.cells;
   double value = 0.0;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double* const row = matrix + i * size;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double* const row = matrix_ + i * cells;
     double g[kRank] = {};
-    double even[kRank] = {};
+    double odd[kRank] = {};
     std::size_t j = 0;
-    for (; j + 1 < size; j += 2) {
-      const double a = row[j];
-      const double b = row[j + 1];
-      const double* const v = vectors + j * kRank;
+    for (; j + 1 < cells; j += 2) {
+      const double* const v = vectors_ + j * kRank;
       for (std::size_t r = 0; r < kRank; ++r) {
-        even[r] += a * v[r];
-        g[r] += b * v[kRank + r];
+        g[r] += row[j] * v[r];
+        odd[r] += row[j + 1] * v[kRank + r];
       }
     }
-    for (; j < size; ++j) {
+    for (; j < cells; ++j) {
       for (std::size_t r = 0; r < kRank; ++r) {
-        even[r] += row[j] * vectors[j * kRank + r];
+        g[r] += row[j] * vectors_[j * kRank + r];
       }
     }
-    double* const own = vectors + i * kRank;
+    double* const own = vectors_ + i * kRank;
     double square = 0.0;
     for (std::size_t r = 0; r < kRank; ++r) {
-      g[r] += even[r] - row[i] * own[r];
+      g[r] += odd[r] - row[i] * own[r];
       square += g[r] * g[r];
     }
+    // 2 g v + q v^2 is largest at length 1, or inside if q is far below 0.
     const double length = sqrt(square);
-    dual_[i] = length + row[i];
-    value += length;
-    if (length > 0.0) {
-      for (std::size_t r = 0; r < kRank; ++r) {
-        own[r] = g[r] / length;
-      }
+    const double y = length + row[i];
+    dual_[i] = y > 0.0 ? y : 0.0;
+    value += y > 0.0 ? y : length * length / -row[i];
+    const double scale = y > 0.0 ? 1.0 / length : -1.0 / row[i];
+    for (std::size_t r = 0; r < kRank && length > 0.0; ++r) {
+      own[r] = g[r] * scale;
     }
   }
   return value;
 }
 
-void EnergyCertificate::improve(double progress) noexcept {
-  const double left = progress < 1.0 ? 1.0 - progress : 0.0;
-  const double falloff = exp(log(kLastStep / kFirstStep) * (1.0 - left));
+void EnergyCertificate::polish(double progress) noexcept {
+  if (!is_polishing_) {
+    is_polishing_ = true;
+    set_matrix();
+    take_vectors(point_);
+    for (std::size_t n = 0; n < multiplier_count_; ++n) {
+      TriangleMultiplier& own = memory_.multipliers[n];
+      own.mean = 0.0F;
+      apply(own, own.value);
+    }
+  }
+  const double part = progress < 1.0 ? progress : 1.0;
   disturb(vectors_, grid_.cells, iteration_ % kRank, kDisturbance, random_);
-  double value = sweep(matrix_, grid_.cells, vectors_);
-  step_multipliers(kFirstStep * falloff * mean_diagonal_);
+  double value = sweep();
+  step_multipliers(kFirstStep * exp(log(kLastStep / kFirstStep) * part) * mean_diagonal_);
   ++iteration_;
-  if (iteration_ % kIterationsPerSearch == 0 && progress < kSearchShare) {
-    forget_unused_multipliers();
-    add_violated();
-  }
-  for (std::size_t i = 0; i < grid_.cells; ++i) {
-    value += matrix_[i * grid_.cells + i];
-  }
   for (const TriangleMultiplier& multiplier : multipliers()) {
-    value += static_cast<double>(multiplier.value);
+    value += multiplier.value;
   }
-  estimate_ = value * scale_ + rounding_constant_;
+  estimate_ = (value + costs_) * scale_;
 }
 
 // Adam, by A (V V') - 1; leaves V V' in scratch_, above the diagonal.
 void EnergyCertificate::step_multipliers(double length) noexcept {
   const std::size_t cells = grid_.cells;
-  double* const columns = vectors_ + kRank * cells;
   for (std::size_t i = 0; i < cells; ++i) {
     for (std::size_t r = 0; r < kRank; ++r) {
-      columns[r * cells + i] = vectors_[i * kRank + r];
+      columns_[r * cells + i] = vectors_[i * kRank + r];
     }
   }
-  for (std::size_t i = 0; i < cells; ++i) {
-    double* const row = scratch_ + i * cells;
-    const double* const own = vectors_ + i * kRank;
-    for (std::size_t j = i + 1; j < cells; ++j) {
-      double sum = 0.0;
-      for (std::size_t r = 0; r < kRank; ++r) {
-        sum += own[r] * columns[r * cells + j];
-      }
-      row[j] = sum;
-    }
-  }
+  fill_products();
   first_power_ *= kFirstDecay;
   second_power_ *= kSecondDecay;
   const double first_weight = length / (1.0 - first_power_);
   const double second_weight = 1.0 / (1.0 - second_power_);
   for (std::size_t n = 0; n < multiplier_count_; ++n) {
     TriangleMultiplier& own = memory_.multipliers[n];
-    const std::int8_t* const signs = kTriangleSigns[own.kind];
-    const double* const row = scratch_ + own.i * cells;
-    const double slope = signs[0] * row[own.j] + signs[1] * scratch_[own.j * cells + own.k] +
-                         signs[2] * row[own.k] - 1.0;
-    const double mean = kFirstDecay * static_cast<double>(own.mean) + (1.0 - kFirstDecay) * slope;
+    const double ascent = slope(own);
+    const double mean = kFirstDecay * static_cast<double>(own.mean) + (1.0 - kFirstDecay) * ascent;
     const double square =
-        kSecondDecay * static_cast<double>(own.square) + (1.0 - kSecondDecay) * slope * slope;
+        kSecondDecay * static_cast<double>(own.square) + (1.0 - kSecondDecay) * ascent * ascent;
     own.mean = static_cast<float>(mean);
     own.square = static_cast<float>(square);
-    const double before = static_cast<double>(own.value);
-    double after = before + first_weight * mean / (sqrt(square * second_weight) + 1e-3);
-    after = own.is_free || after > 0.0 ? after : 0.0;
-    own.value = static_cast<float>(after);
-    if (own.value != static_cast<float>(before)) {
-      apply(own, static_cast<double>(own.value) - before);
+    const double before = own.value;
+    const double after = before + first_weight * mean / (sqrt(square * second_weight) + 1e-3);
+    own.value = after > 0.0 ? after : 0.0;
+    if (own.value > before || own.value < before) {
+      apply(own, own.value - before);
     }
-  }
-}
-
-void EnergyCertificate::add_violated() noexcept {
-  ViolatedTriangles violated;
-  violated.search(scratch_, grid_.cells);
-  for (const ViolatedTriangle& found : violated.found()) {
-    (void)add_multiplier(found.i, found.j, found.k, found.kind, false);
   }
 }
 
 // To whole units, and the matrix anew from them.
 void EnergyCertificate::fix_multipliers() noexcept {
-  const std::size_t cells = grid_.cells;
-  for (std::size_t i = 0; i < cells * cells; ++i) {
-    matrix_[i] = phi_[i];
-  }
-  constant_ = rounding_constant_ / scale_;
+  set_matrix();
+  constant_ = costs_;
   for (std::size_t n = 0; n < multiplier_count_; ++n) {
     TriangleMultiplier& own = memory_.multipliers[n];
-    const double units = static_cast<double>(own.value) * kUnitsPerOne;
-    own.units = static_cast<std::int32_t>(floor(units + 0.5));
+    own.units = static_cast<std::int32_t>(floor(own.value * kUnitsPerOne + 0.5));
     const double amount = static_cast<double>(own.units) / kUnitsPerOne;
     apply(own, amount);
     constant_ += amount;
@@ -396,15 +371,15 @@ std::size_t EnergyCertificate::used_multipliers() const noexcept {
   return used;
 }
 
-// Cholesky's factorisation in place, four rows at a time; scratch_ holds the upper triangle.
-bool EnergyCertificate::is_semidefinite(const double* matrix, std::size_t size,
-                                        Span<const std::int32_t> duals) noexcept {
+// Cholesky's factorisation of Diag(y) - Q', four rows at a time; scratch_ holds the upper triangle.
+bool EnergyCertificate::is_semidefinite() noexcept {
+  const std::size_t size = grid_.cells;
   double* const factor = scratch_;
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = i; j < size; ++j) {
-      factor[i * size + j] = -matrix[i * size + j];
+      factor[i * size + j] = -matrix_[i * size + j];
     }
-    factor[i * size + i] += static_cast<double>(duals[i]) / kUnitsPerOne - kFactorMargin;
+    factor[i * size + i] += static_cast<double>(memory_.duals[i]) / kUnitsPerOne - kFactorMargin;
   }
   constexpr std::size_t kPanel = 4;
   for (std::size_t first = 0; first < size; first += kPanel) {
@@ -447,78 +422,58 @@ bool EnergyCertificate::is_semidefinite(const double* matrix, std::size_t size,
   return true;
 }
 
-// Sweeps until they rest, then the least multiple of the lengths that is proven.
-bool EnergyCertificate::find_duals(const double* matrix, std::size_t size, double* vectors,
-                                   std::size_t sweeps, Span<std::int32_t> duals,
-                                   double& bound) noexcept {
+// Sweeps until they rest.
+void EnergyCertificate::settle() noexcept {
   for (std::size_t axis = 0; axis < kRank; ++axis) {
-    disturb(vectors, size, axis, kDisturbance, random_);
+    disturb(vectors_, grid_.cells, axis, kDisturbance, random_);
   }
-  double value = sweep(matrix, size, vectors);
-  for (std::size_t i = 1; i < sweeps; ++i) {
-    const double next = sweep(matrix, size, vectors);
-    if (i % 16 == 0 && next - value < 1e-9 * next) {
+  double value = sweep();
+  for (std::size_t i = 1; i < kLastSweeps; ++i) {
+    const double next = sweep();
+    if (i % 16 == 0 && abs(next - value) < kSettled * next) {
       break;
     }
     value = next;
   }
-  const auto set = [&](double factor) {
-    for (std::size_t i = 0; i < size; ++i) {
-      const double units = dual_[i] * factor * kUnitsPerOne + 1.0;
-      duals[i] = units < 2147483647.0 ? static_cast<std::int32_t>(units)
-                                      : std::numeric_limits<std::int32_t>::max();
-    }
-    return is_semidefinite(matrix, size, duals.first(size));
-  };
-  double low = 0.0;
-  double high = 1e-7;
-  while (!set(1.0 + high)) {
-    low = high;
-    high *= 4.0;
-    if (high > 8.0) {
-      return false;
-    }
+}
+
+bool EnergyCertificate::set_duals(double raise) noexcept {
+  for (std::size_t i = 0; i < grid_.cells; ++i) {
+    const double units = (dual_[i] + raise * mean_diagonal_) * kUnitsPerOne + 1.0;
+    memory_.duals[i] = units < 2147483647.0 ? static_cast<std::int32_t>(units)
+                                            : std::numeric_limits<std::int32_t>::max();
   }
-  for (int i = 0; i < 4 && low > 0.0; ++i) {
-    const double middle = 0.5 * (low + high);
-    (set(1.0 + middle) ? high : low) = middle;
-  }
-  if (!set(1.0 + high)) {
-    return false;
-  }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < size; ++i) {
-    sum += static_cast<double>(duals[i]);
-  }
-  bound = sum / kUnitsPerOne;
-  return true;
+  return is_semidefinite();
 }
 
 bool EnergyCertificate::prove() noexcept {
   fix_multipliers();
-  const std::size_t cells = grid_.cells;
-  for (std::size_t i = 0; i < kRank * cells; ++i) {
-    leaf_vectors_[i] = vectors_[i];
+  if (!is_polishing_) {
+    take_vectors(point_);
   }
-  for (std::size_t i = 0; i < cells; ++i) {
-    memory_.signs[i] = 0;
+  settle();
+  double low = 0.0;
+  double high = 1e-7;
+  while (!set_duals(high)) {
+    low = high;
+    high *= 4.0;
+    if (high > 100.0) {
+      return false;
+    }
   }
-  memory_.signs[0] = 1;  // A pattern and its opposite have the same value.
-  memory_.nodes[0] = {};
-  node_count_ = 1;
-  leaf_count_ = 1;
-  leaves_[0].size = static_cast<std::uint16_t>(cells);
-  proven_ = find_duals(matrix_, cells, vectors_of(0), kRootSweeps, memory_.duals.first(cells),
-                       leaves_[0].bound);
-  return proven_;
-}
-
-double EnergyCertificate::bound() const noexcept {
-  double largest = 0.0;
-  for (std::size_t leaf = 0; leaf < leaf_count_; ++leaf) {
-    largest = leaves_[leaf].bound > largest ? leaves_[leaf].bound : largest;
+  for (int i = 0; i < 5 && low > 0.0; ++i) {
+    const double middle = 0.5 * (low + high);
+    (set_duals(middle) ? high : low) = middle;
   }
-  return (largest + constant_) * scale_ * (1.0 + 1e-12);
+  if (!set_duals(high)) {
+    return false;
+  }
+  double sum = constant_;
+  for (std::size_t i = 0; i < grid_.cells; ++i) {
+    sum += static_cast<double>(memory_.duals[i]) / kUnitsPerOne;
+  }
+  bound_ = sum * scale_ * (1.0 + 1e-12);
+  return true;
 }
 
 }  // namespace emax

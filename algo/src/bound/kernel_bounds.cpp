@@ -1,4 +1,4 @@
-// Bounds of the kernel phi and its derivatives on a mesh, and the energy of a pulse.
+// Bounds of the slope of the kernel phi on a mesh, and the energy of a pulse.
 #include "emax/bound/kernel_bounds.hpp"
 
 #include "emax/base/complex_exp.hpp"
@@ -9,7 +9,7 @@
 namespace emax {
 namespace {
 
-constexpr double kMeshResolution = 40.0;
+constexpr double kMeshResolution = 16.0;
 /// Above this many intervals every second point in t has to do.
 constexpr std::size_t kFineIntervals = 4000;
 constexpr double kRounding = 1.0 + 1e-9;
@@ -150,28 +150,21 @@ void KernelBounds::fill_tables(Span<double> numbers) noexcept {
     held_im_[i] = take();
   }
   impulse_ = take();
-  impulse_slope_ = take();
-  for (Span<double>& integral : integrals_) {
-    integral = take();
-  }
+  integrals_ = take();
   for (std::size_t point = 0; point < points; ++point) {
     const double time_s = static_cast<double>(point) * step_s_;
     Complex held[kMaxModes];
     held_responses(*model_, duration_s_ - time_s > 0.0 ? duration_s_ - time_s : 0.0, held);
     double impulse = 0.0;
-    double slope = 0.0;
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const Complex exponential = exp(time_s * modes[i].pole);
       exponential_re_[i][point] = exponential.re;
       exponential_im_[i][point] = exponential.im;
       held_re_[i][point] = held[i].re;
       held_im_[i][point] = held[i].im;
-      const Complex term = modes[i].residue * exponential;
-      impulse += term.re;
-      slope += real_of_product(modes[i].pole, term);
+      impulse += real_of_product(modes[i].residue, exponential);
     }
     impulse_[point] = impulse;
-    impulse_slope_[point] = slope;
   }
 }
 
@@ -187,9 +180,9 @@ bool KernelBounds::has_digits() const noexcept {
   return energy_rounding(*model_, duration_s_, 0, found) <= kLeastDigits * found;
 }
 
-// With L_n the integral of |k^(n)| over [0, T], at most sqrt(T) times its norm, the derivatives of
-// order n + 2 that the remainders ask for are integrals of products k^(i) k^(j) with i + j = n + 2,
-// bounded by norms, and what the moving end of the integral adds.
+// The third derivatives that the remainder asks for are integrals of products k^(i) k^(j) with i +
+// j = 3, bounded by norms, and what the moving end of the integral adds, with the integral of
+// |k^(n)| over [0, T] at most sqrt(T) times its norm.
 void KernelBounds::fill_norms() noexcept {
   const Span<const Mode> modes = model_->modes();
   for (std::size_t n = 0; n < kDerivatives; ++n) {
@@ -209,15 +202,11 @@ void KernelBounds::fill_norms() noexcept {
   }
   const double root = sqrt(duration_s_);
   const double t_step_s = static_cast<double>(stride_) * step_s_;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const double smooth = maximum(norms_[n + 2] * norms_[0], norms_[n] * norms_[2]);
-    double moving_end = n == 2 ? starts_[1] * starts_[1] : 0.0;  // A jump of the slope at s = t.
-    for (std::size_t j = 1; j <= n + 1; ++j) {
-      moving_end += 2.0 * starts_[j] * root * norms_[n + 1 - j];  // On both sides of t.
-    }
-    remainders_[n] =
-        0.125 * (t_step_s * t_step_s + step_s_ * step_s_) * (duration_s_ * smooth + moving_end);
-  }
+  const double smooth = maximum(norms_[3] * norms_[0], norms_[1] * norms_[2]);
+  // On both sides of t.
+  const double moving_end = 2.0 * root * (starts_[1] * norms_[1] + starts_[2] * norms_[0]);
+  remainder_ =
+      0.125 * (t_step_s * t_step_s + step_s_ * step_s_) * (duration_s_ * smooth + moving_end);
 }
 
 void KernelBounds::step() noexcept {
@@ -227,60 +216,48 @@ void KernelBounds::step() noexcept {
   }
 }
 
-/// Sums of |f| by the trapezoidal rule, for the three orders n, a chunk of mesh points at a time.
+/// Sums of |f| by the trapezoidal rule, a chunk of mesh points at a time.
 struct KernelBounds::RowSums {
   static constexpr std::size_t kChunk = 256;
 
   /// Takes the first terms; an end of the range of one formula counts half.
   void add(std::size_t count, bool starts, bool ends) noexcept {
-    for (std::size_t n = 0; n < 3; ++n) {
-      for (std::size_t i = 0; i < count; ++i) {
-        sums[n] += abs(terms[n][i]);
-      }
-      sums[n] -= starts ? 0.5 * abs(terms[n][0]) : 0.0;
-      sums[n] -= ends ? 0.5 * abs(terms[n][count - 1]) : 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += abs(terms[i]);
     }
+    sum -= starts ? 0.5 * abs(terms[0]) : 0.0;
+    sum -= ends ? 0.5 * abs(terms[count - 1]) : 0.0;
   }
 
-  double sums[3] = {};
-  double terms[3][kChunk] = {};
+  double sum = 0.0;
+  double terms[kChunk] = {};
 };
 
 void KernelBounds::fill_row(std::size_t row) noexcept {
   RowSums sums;
   add_from_row_on(row, sums);
   add_up_to_row(row, sums);
-  for (std::size_t n = 0; n < 3; ++n) {
-    integrals_[n][row] = sums.sums[n] * step_s_;
-  }
+  integrals_[row] = sums.sum * step_s_;
 }
 
-// s >= t: -+ integral of k^(n)(w + s - t) k(w).
+// s >= t: minus the integral of k'(w + s - t) k(w).
 void KernelBounds::add_from_row_on(std::size_t row, RowSums& sums) const noexcept {
   const Span<const Mode> modes = model_->modes();
-  auto& terms = sums.terms;
   for (std::size_t first = row; first <= intervals_; first += RowSums::kChunk) {
     const std::size_t left = intervals_ + 1 - first;
     const std::size_t count = left < RowSums::kChunk ? left : RowSums::kChunk;
-    for (auto& order : terms) {
-      for (std::size_t i = 0; i < count; ++i) {
-        order[i] = 0.0;
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      sums.terms[i] = 0.0;
     }
     for (std::size_t m = 0; m < modes.size(); ++m) {
-      const Complex c0 = modes[m].residue;
-      const Complex c1 = c0 * modes[m].pole;
-      const Complex c2 = c1 * modes[m].pole;
+      const Complex c = modes[m].residue * modes[m].pole;
       const double* ere = &exponential_re_[m][first - row];
       const double* eim = &exponential_im_[m][first - row];
       const double* ure = &held_re_[m][first];
       const double* uim = &held_im_[m][first];
       for (std::size_t i = 0; i < count; ++i) {
-        const double re = ere[i] * ure[i] - eim[i] * uim[i];
-        const double im = ere[i] * uim[i] + eim[i] * ure[i];
-        terms[0][i] += c0.re * re - c0.im * im;
-        terms[1][i] += c1.re * re - c1.im * im;
-        terms[2][i] += c2.re * re - c2.im * im;
+        sums.terms[i] +=
+            c.re * (ere[i] * ure[i] - eim[i] * uim[i]) - c.im * (ere[i] * uim[i] + eim[i] * ure[i]);
       }
     }
     sums.add(count, first == row, first + count > intervals_);
@@ -290,37 +267,28 @@ void KernelBounds::add_from_row_on(std::size_t row, RowSums& sums) const noexcep
 // s <= t, by the distance t - s.
 void KernelBounds::add_up_to_row(std::size_t row, RowSums& sums) const noexcept {
   const Span<const Mode> modes = model_->modes();
-  auto& terms = sums.terms;
   const double* impulse = impulse_.data();
-  const double* slope = impulse_slope_.data();
   const std::size_t end = intervals_ - row;  // T - t.
   for (std::size_t first = 0; first <= row; first += RowSums::kChunk) {
     const std::size_t left = row + 1 - first;
     const std::size_t count = left < RowSums::kChunk ? left : RowSums::kChunk;
     for (std::size_t i = 0; i < count; ++i) {
-      const double late = impulse[end + first + i];
-      terms[0][i] = 0.0;
-      terms[1][i] = -impulse[end] * late;
-      terms[2][i] = slope[end] * late - impulse[end] * slope[end + first + i];
+      sums.terms[i] = -impulse[end] * impulse[end + first + i];
     }
     for (std::size_t m = 0; m < modes.size(); ++m) {
-      const Complex c0 = modes[m].residue * Complex{held_re_[m][row], held_im_[m][row]};
-      const Complex c1 = c0 * modes[m].pole;
-      const Complex c2 = c1 * modes[m].pole;
+      const Complex c =
+          modes[m].residue * modes[m].pole * Complex{held_re_[m][row], held_im_[m][row]};
       const double* ere = &exponential_re_[m][first];
       const double* eim = &exponential_im_[m][first];
       for (std::size_t i = 0; i < count; ++i) {
-        terms[0][i] += c0.re * ere[i] - c0.im * eim[i];
-        terms[1][i] += c1.re * ere[i] - c1.im * eim[i];
-        terms[2][i] += c2.re * ere[i] - c2.im * eim[i];
+        sums.terms[i] += c.re * ere[i] - c.im * eim[i];
       }
     }
     sums.add(count, first == 0, first + count > row);
   }
 }
 
-double KernelBounds::bound(int order, double from_s, double to_s) const noexcept {
-  const auto n = static_cast<std::size_t>(order);
+double KernelBounds::bound(double from_s, double to_s) const noexcept {
   const double t_step_s = static_cast<double>(stride_) * step_s_;
   const std::size_t last_row = intervals_ / stride_;
   const double last = static_cast<double>(last_row);
@@ -328,9 +296,9 @@ double KernelBounds::bound(int order, double from_s, double to_s) const noexcept
   const double high = floor(to_s / t_step_s + 1e-6) + 1.0;
   double largest = 0.0;
   for (double point = maximum(low, 0.0); point <= (high < last ? high : last); point += 1.0) {
-    largest = maximum(largest, integrals_[n][static_cast<std::size_t>(point) * stride_]);
+    largest = maximum(largest, integrals_[static_cast<std::size_t>(point) * stride_]);
   }
-  return (largest + remainders_[n]) * kRounding;
+  return (largest + remainder_) * kRounding;
 }
 
 }  // namespace emax

@@ -2,15 +2,12 @@
 #include "violated_triangles.hpp"
 
 #include "emax/base/elementary.hpp"
-#include "emax/bound/energy_certificate.hpp"
 
 namespace emax {
 
 void ViolatedTriangles::search(const double* products, std::size_t cells) noexcept {
   constexpr std::size_t kBlock = 16;
   count_ = 0;
-  limit_ = most(cells);
-  least_ = kLeastViolation;
   for (std::size_t i = 0; i + 2 < cells; ++i) {
     for (std::size_t j = i + 1; j + 1 < cells; ++j) {
       const Pair pair = {i, j, products + i * cells, products + j * cells};
@@ -56,12 +53,12 @@ void ViolatedTriangles::keep_violated(const Pair& pair, std::size_t first,
 }
 
 void ViolatedTriangles::keep(const ViolatedTriangle& triangle) noexcept {
-  if (count_ < limit_) {
+  if (count_ < heap_.size()) {
     rise(triangle);
   } else {
     replace_least(triangle);
   }
-  least_ = count_ == limit_ ? heap_[0].violation : least_;
+  least_ = count_ == heap_.size() ? heap_[0].violation : least_;
 }
 
 // From a new place at the end of the heap.

@@ -12,13 +12,6 @@ namespace {
 
 using app::TextWriter;
 
-constexpr std::uint8_t kFreeKind = 4;
-
-void write_signed(std::int32_t value, TextWriter& out) noexcept {
-  const std::int64_t wide = value;
-  out.text(wide < 0 ? "-" : "").integer(static_cast<std::uint64_t>(wide < 0 ? -wide : wide));
-}
-
 void write_list(const char* name, Span<const double> values, TextWriter& out) noexcept {
   out.text(" \"").text(name).text("\": [");
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -30,7 +23,7 @@ void write_list(const char* name, Span<const double> values, TextWriter& out) no
 void write_about(const ProvenEnergy& proven, TextWriter& out) noexcept {
   const Accelerometer& device = proven.model->device();
   const ReferenceFilter& filter = proven.model->filter();
-  out.text(" \"certificate\": 1,\n \"version\": \"").text(app::kVersion).text("\",\n");
+  out.text(" \"certificate\": 2,\n \"version\": \"").text(app::kVersion).text("\",\n");
   out.text(" \"model\": {\"S\": ").exact(device.sensitivity);
   out.text(", \"f0\": ").exact(device.natural_frequency_hz);
   out.text(", \"beta\": ").exact(device.damping);
@@ -49,17 +42,6 @@ void write_about(const ProvenEnergy& proven, TextWriter& out) noexcept {
   out.text("]},\n \"bound\": ").exact(proven.bound_v2s()).text(",\n");
 }
 
-void write_grid(const CertificateGrid& grid, TextWriter& out) noexcept {
-  write_list("edges", Span<const double>(grid.edges_s).first(grid.cells + 1), out);
-  write_list("switch_cost", Span<const double>(grid.switch_cost).first(grid.cells), out);
-  out.text(" \"run_end\": [");
-  for (std::size_t i = 0; i < grid.cells; ++i) {
-    out.text(i == 0 ? "" : ", ").integer(grid.run_end[i]);
-  }
-  out.text("],\n \"free_from\": ").integer(grid.free_from);
-  out.text(",\n \"constant\": ").exact(grid.constant).text(",\n");
-}
-
 void write_multipliers(const EnergyCertificate& certificate, TextWriter& out) noexcept {
   out.text(" \"multipliers\": [");
   const char* separator = "\n  ";
@@ -70,35 +52,11 @@ void write_multipliers(const EnergyCertificate& certificate, TextWriter& out) no
     out.text(separator).text("[").integer(multiplier.i);
     out.text(",").integer(multiplier.j);
     out.text(",").integer(multiplier.k);
-    out.text(",").integer(multiplier.is_free ? kFreeKind : multiplier.kind).text(",");
-    write_signed(multiplier.units, out);
-    out.text("]");
+    out.text(",").integer(multiplier.kind);
+    out.text(",").integer(static_cast<std::uint64_t>(multiplier.units)).text("]");
     separator = ",\n  ";
   }
   out.text("],\n");
-}
-
-void write_node(const EnergyCertificate& certificate, const CertificateNode& node,
-                TextWriter& out) noexcept {
-  switch (node.kind) {
-    case CertificateNode::Kind::kEmpty:
-      out.text("{}");
-      return;
-    case CertificateNode::Kind::kSplit:
-      out.text("{\"cell\": ").integer(node.cell);
-      out.text(", \"plus\": ").integer(node.children[0]);
-      out.text(", \"minus\": ").integer(node.children[1]).text("}");
-      return;
-    case CertificateNode::Kind::kLeaf:
-      break;
-  }
-  out.text("{\"y\": [");
-  const Span<const std::int32_t> duals = certificate.duals(node.leaf);
-  for (std::size_t i = 0; i < duals.size(); ++i) {
-    out.text(i == 0 ? "" : ",");
-    write_signed(duals[i], out);
-  }
-  out.text("]}");
 }
 
 }  // namespace
@@ -107,15 +65,16 @@ void write_certificate(const ProvenEnergy& proven, TextWriter& out) noexcept {
   const EnergyCertificate& certificate = *proven.certificate;
   out.text("{\n");
   write_about(proven, out);
-  write_grid(certificate.grid(), out);
+  const CertificateGrid& grid = certificate.grid();
+  write_list("edges", Span<const double>(grid.edges_s).first(grid.cells + 1), out);
+  write_list("costs", Span<const double>(grid.costs).first(grid.cells), out);
   out.text(" \"unit\": ").exact(certificate.unit()).text(",\n");
   write_multipliers(certificate, out);
-  out.text(" \"tree\": [");
-  const char* separator = "\n  ";
-  for (const CertificateNode& node : certificate.nodes()) {
-    out.text(separator);
-    write_node(certificate, node, out);
-    separator = ",\n  ";
+  out.text(" \"y\": [");
+  const char* separator = "";
+  for (const std::int32_t units : certificate.duals()) {
+    out.text(separator).integer(static_cast<std::uint64_t>(units));
+    separator = ",";
   }
   out.text("]\n}\n");
 }

@@ -17,12 +17,10 @@ struct ProvenEnergy {
   double energy_v2s = 0.0;  ///< Reached by the signal.
 
   double bound_v2s() const noexcept { return limit_mps2 * limit_mps2 * certificate->bound(); }
-  double gap() const noexcept { return bound_v2s() / energy_v2s - 1.0; }
 };
 
 /// Writes the certificate as JSON: all that `host_tests/reference/check_certificate.py` reads.
-/// Costs, constant and unit are for a = 1; a multiplier is [i, j, k, kind, units], with kind 4 for
-/// a kind 3 of any sign.
+/// Costs and unit are for a = 1; a multiplier is [i, j, k, kind, units], and y is in units.
 void write_certificate(const ProvenEnergy& proven, app::TextWriter& out) noexcept;
 
 }  // namespace emax::desk

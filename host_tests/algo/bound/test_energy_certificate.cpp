@@ -18,21 +18,19 @@ using test::paper_model;
 
 class Work {
  public:
-  Work(std::size_t cells, std::size_t intervals, std::size_t leaves = 400)
-      : numbers_(certificate_numbers(cells, intervals, leaves)),
-        multipliers_(20000),
-        hash_(65536),
-        nodes_(2 * leaves),
-        signs_(leaves * cells),
-        duals_(leaves * cells) {}
+  Work(std::size_t cells, std::size_t intervals)
+      : numbers_(certificate_numbers(cells, intervals)),
+        multipliers_(40000),
+        hash_(131072),
+        violated_(20 * cells),
+        duals_(cells) {}
 
   CertificateWorkspace workspace() {
     CertificateWorkspace all;
     all.numbers = {numbers_.data(), numbers_.size()};
     all.multipliers = {multipliers_.data(), multipliers_.size()};
     all.hash = {hash_.data(), hash_.size()};
-    all.nodes = {nodes_.data(), nodes_.size()};
-    all.signs = {signs_.data(), signs_.size()};
+    all.violated = {violated_.data(), violated_.size()};
     all.duals = {duals_.data(), duals_.size()};
     return all;
   }
@@ -43,15 +41,17 @@ class Work {
   std::vector<double> numbers_;
   std::vector<TriangleMultiplier> multipliers_;
   std::vector<std::uint32_t> hash_;
-  std::vector<CertificateNode> nodes_;
-  std::vector<std::int8_t> signs_;
+  std::vector<ViolatedTriangle> violated_;
   std::vector<std::int32_t> duals_;
   std::unique_ptr<EnergyCertificate> certificate_ = std::make_unique<EnergyCertificate>();
 };
 
-void improve(EnergyCertificate& certificate, int iterations) {
-  for (int i = 0; i < iterations; ++i) {
-    certificate.improve(static_cast<double>(i) / iterations);
+void improve(EnergyCertificate& certificate, int rounds, int steps) {
+  for (int i = 0; i < rounds && !certificate.at_rest(); ++i) {
+    certificate.relax();
+  }
+  for (int i = 0; i < steps; ++i) {
+    certificate.polish(static_cast<double>(i) / steps);
   }
 }
 
@@ -91,24 +91,24 @@ double proven(const std::vector<double>& matrix, std::size_t cells) {
   EXPECT_EQ(certificate.start({matrix.data(), matrix.size()}, cells, work.workspace()),
             Status::kOk);
   EXPECT_TRUE(certificate.ready());
-  improve(certificate, 2000);
+  improve(certificate, 60, 1000);
   EXPECT_TRUE(certificate.prove());
-  double bound = certificate.bound();
-  while (certificate.branch()) {
-    EXPECT_LE(certificate.bound(), bound);
-    bound = certificate.bound();
-  }
-  return bound;
+  return certificate.bound();
 }
 
-// The largest energies of all sign patterns, computed by enumeration outside this code.
+// The largest energies of all sign patterns, computed by enumeration outside this code. The
+// relaxation with triangles is tight there, to what the multipliers are off by.
 TEST(EnergyCertificate, ReachesTheEnumeratedMaximum) {
-  EXPECT_NEAR(kPaperA2 * proven(phi_of(20), 20) / 0.0050935397728704, 1.0, 1e-6);
-  EXPECT_NEAR(kPaperA2 * proven(phi_of(24), 24) / 0.0051028687271305, 1.0, 1e-6);
+  const double of_20 = kPaperA2 * proven(phi_of(20), 20) / 0.0050935397728704;
+  EXPECT_GE(of_20, 1.0);
+  EXPECT_LT(of_20, 1.0001);
+  const double of_24 = kPaperA2 * proven(phi_of(24), 24) / 0.0051028687271305;
+  EXPECT_GE(of_24, 1.0);
+  EXPECT_LT(of_24, 1.0001);
 }
 
-// Matrices whose relaxation is not tight, so that cases are needed.
-TEST(EnergyCertificate, ReachesTheEnumeratedMaximumOfAnyMatrix) {
+// Matrices of any kind, with diagonals below 0 too, where numbers within +-1 are better than signs.
+TEST(EnergyCertificate, IsNeverBelowTheEnumeratedMaximumOfAnyMatrix) {
   std::uint32_t state = 5;
   const auto random = [&state]() {
     state = state * 1664525u + 1013904223u;
@@ -125,29 +125,36 @@ TEST(EnergyCertificate, ReachesTheEnumeratedMaximumOfAnyMatrix) {
     const double best = enumerated(matrix, cells);
     const double bound = proven(matrix, cells);
     EXPECT_GE(bound, best * (1.0 - 1e-12)) << cells;
-    EXPECT_NEAR(bound / best, 1.0, 1e-5) << cells;
+    EXPECT_LT(bound, 1.2 * best) << cells;
   }
+}
+
+// v' M v = -v_1^2 + 2 v_1 v_2/4 is 1/16 at (1/4, 1) and negative at every corner.
+TEST(EnergyCertificate, AllowsNumbersInsideTheBox) {
+  const std::vector<double> matrix = {-1.0, 0.25, 0.25, 0.0};
+  EXPECT_NEAR(proven(matrix, 2), 0.0625, 1e-5);
 }
 
 TEST(EnergyCertificate, HoldsForShortAndLongEffort) {
   const ModalModel model = paper_model();
   const double duration_s = 2e-3;
-  Work work(160, mesh_intervals(model, duration_s), 20);
+  const double switches_s[] = {1.0475e-3};
+  Work work(110, mesh_intervals(model, duration_s));
   EnergyCertificate& certificate = work.certificate();
   double before = 1.0;
-  for (const int iterations : {50, 400, 2500}) {
-    ASSERT_EQ(certificate.start(model, duration_s, 90, work.workspace()), Status::kOk);
+  for (const int rounds : {1, 5, 30}) {
+    ASSERT_EQ(certificate.start(model, duration_s, 90, switches_s, work.workspace()), Status::kOk);
     while (!certificate.ready()) {
       certificate.prepare();
     }
-    improve(certificate, iterations);
+    improve(certificate, rounds, 20 * rounds);
     ASSERT_TRUE(certificate.prove());
     const double bound = kPaperA2 * certificate.bound();
     EXPECT_GT(bound, test::kBestEnergy2ms);
     EXPECT_LT(bound, before);
     before = bound;
   }
-  EXPECT_LT(before, 1.05 * test::kBestEnergy2ms);
+  EXPECT_LT(before, 1.005 * test::kBestEnergy2ms);
 }
 
 // The proof itself, built anew from multipliers and y, with long double and no margin.
@@ -158,14 +165,14 @@ TEST(EnergyCertificate, LeavesASemidefiniteMatrix) {
   EnergyCertificate& certificate = work.certificate();
   ASSERT_EQ(certificate.start({matrix.data(), matrix.size()}, cells, work.workspace()),
             Status::kOk);
-  improve(certificate, 300);
+  improve(certificate, 20, 300);
   ASSERT_TRUE(certificate.prove());
   std::vector<long double> slack(matrix.size());
   for (std::size_t i = 0; i < matrix.size(); ++i) {
     slack[i] = -static_cast<long double>(matrix[i]);
   }
   long double bound = 0.0L;
-  const Span<const std::int32_t> duals = certificate.duals(0);
+  const Span<const std::int32_t> duals = certificate.duals();
   ASSERT_EQ(duals.size(), cells);
   for (std::size_t i = 0; i < cells; ++i) {
     const long double y = static_cast<long double>(duals[i]) * certificate.unit();
@@ -173,7 +180,7 @@ TEST(EnergyCertificate, LeavesASemidefiniteMatrix) {
     bound += y;
   }
   for (const TriangleMultiplier& own : certificate.multipliers()) {
-    EXPECT_TRUE(own.is_free || own.units >= 0);
+    EXPECT_GE(own.units, 0);
     const long double half = 0.5L * own.units * certificate.unit();
     const std::int8_t* const signs = kTriangleSigns[own.kind];
     const std::size_t pairs[3][2] = {{own.i, own.j}, {own.j, own.k}, {own.i, own.k}};
@@ -195,23 +202,46 @@ TEST(EnergyCertificate, LeavesASemidefiniteMatrix) {
   }
 }
 
+TEST(EnergyCertificate, IsTheSameTwice) {
+  const std::vector<double> matrix = phi_of(16);
+  Work first(16, 0);
+  Work second(16, 0);
+  for (Work* const work : {&first, &second}) {
+    ASSERT_EQ(work->certificate().start({matrix.data(), matrix.size()}, 16, work->workspace()),
+              Status::kOk);
+    improve(work->certificate(), 10, 100);
+    ASSERT_TRUE(work->certificate().prove());
+  }
+  EXPECT_EQ(first.certificate().bound(), second.certificate().bound());
+  const Span<const TriangleMultiplier> ones = first.certificate().multipliers();
+  const Span<const TriangleMultiplier> others = second.certificate().multipliers();
+  ASSERT_EQ(ones.size(), others.size());
+  for (std::size_t i = 0; i < ones.size(); ++i) {
+    EXPECT_EQ(ones[i].units, others[i].units);
+  }
+}
+
 TEST(EnergyCertificate, RefusesSmallWorkspacesAndWrongSizes) {
   const std::vector<double> matrix = phi_of(8);
-  Work work(8, 0, 4);
+  Work work(8, 0);
   EnergyCertificate& certificate = work.certificate();
   const Span<const double> all(matrix.data(), matrix.size());
   EXPECT_EQ(certificate.start(all, 7, work.workspace()), Status::kInvalidArgument);
   EXPECT_EQ(certificate.start(all.first(1), 1, work.workspace()), Status::kInvalidArgument);
   CertificateWorkspace small = work.workspace();
-  small.numbers = small.numbers.first(small.numbers.size() - 1);
+  small.numbers = small.numbers.first(certificate_numbers(8, 0) - 1);
   EXPECT_EQ(certificate.start(all, 8, small), Status::kBufferTooSmall);
   small = work.workspace();
   small.hash = small.hash.first(60000);
   EXPECT_EQ(certificate.start(all, 8, small), Status::kBufferTooSmall);
   small = work.workspace();
-  small.signs = small.signs.first(7);
+  small.duals = small.duals.first(7);
   EXPECT_EQ(certificate.start(all, 8, small), Status::kBufferTooSmall);
-  EXPECT_EQ(certificate.start(paper_model(), 2e-3, 90, work.workspace()), Status::kBufferTooSmall);
+  small = work.workspace();
+  small.violated = {};
+  EXPECT_EQ(certificate.start(all, 8, small), Status::kBufferTooSmall);
+  EXPECT_EQ(certificate.start(paper_model(), 2e-3, 90, Span<const double>(), work.workspace()),
+            Status::kBufferTooSmall);
   EXPECT_FALSE(certificate.ready());
 }
 

@@ -1,4 +1,4 @@
-// Proven upper bounds of what the gradient of the energy can do anywhere in [0, T].
+// Proven upper bounds of how fast the gradient of the energy changes anywhere in [0, T].
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,24 @@ namespace emax {
 inline constexpr std::size_t kMaxMesh = std::size_t{1} << 15;
 
 /// @returns The number of intervals of a mesh on [0, T] that resolves the model's fastest mode to
-/// 1/40 of its time constant; kMaxMesh + 1 if that takes too many.
+/// 1/16 of its time constant; kMaxMesh + 1 if that takes too many.
 std::size_t mesh_intervals(const ModalModel& model, double duration_s) noexcept;
 
 /// The number of doubles that `KernelBounds` needs for such a mesh.
 constexpr std::size_t kernel_bounds_numbers(std::size_t intervals) noexcept {
-  return (4 * kMaxModes + 5) * (intervals + 1);
+  return (4 * kMaxModes + 2) * (intervals + 1);
 }
 
-/// Bounds over s of the kernel phi(t, s) of paper equation (5) and its derivatives by t:
+/// Bounds of how fast the gradient of the energy changes, by the kernel phi(t, s) of paper equation
+/// (5):
 ///
-///     m_n(t) = integral from 0 to T of |d^n phi(t, s) / dt^n| ds, n = 0, 1, 2.
+///     m_1(t) = integral from 0 to T of |d phi(t, s) / dt| ds.
 ///
-/// So (Phi x)(t) and its first two derivatives stay within a m_n(t) for every signal |x| <= a. On a
-/// mesh in s the integral of |f| is at most that of its linear interpolation plus 1/8 of the
-/// squared step times the integral of |f''|, and the same from mesh point to mesh point in t; the
-/// derivatives of order n + 2 are bounded by norms of k in closed form. Nothing is estimated but
-/// rounding, for which a relative 1e-9 is added.
+/// So the derivative of (Phi x)(t) stays within a m_1(t) for every signal |x| <= a. On a mesh in s
+/// the integral of |f| is at most that of its linear interpolation plus 1/8 of the squared step
+/// times the integral of |f''|, and the same from mesh point to mesh point in t; the third
+/// derivatives are bounded by norms of k in closed form. Nothing is estimated but rounding, for
+/// which a relative 1e-9 is added.
 ///
 /// Only for the integral-square error and the in-band error without a delay, and an impulse
 /// response that starts at zero (filters of order 2 and more).
@@ -56,11 +57,8 @@ class KernelBounds {
     return static_cast<double>(next_row_) / static_cast<double>(intervals_ + 1);
   }
 
-  /// @returns An upper bound of m_`order` over [`from_s`, `to_s`], which is cut to [0, T].
-  double bound(int order, double from_s, double to_s) const noexcept;
-
-  /// @returns The norm of k' over [0, infinity).
-  double slope_norm() const noexcept { return norms_[1]; }
+  /// @returns An upper bound of m_1 over [`from_s`, `to_s`], which is cut to [0, T].
+  double bound(double from_s, double to_s) const noexcept;
 
  private:
   void fill_tables(Span<double> numbers) noexcept;
@@ -71,7 +69,7 @@ class KernelBounds {
   void add_from_row_on(std::size_t row, RowSums& sums) const noexcept;
   void add_up_to_row(std::size_t row, RowSums& sums) const noexcept;
 
-  static constexpr std::size_t kDerivatives = 5;
+  static constexpr std::size_t kDerivatives = 4;
 
   const ModalModel* model_ = nullptr;
   double duration_s_ = 0.0;
@@ -81,14 +79,13 @@ class KernelBounds {
   std::size_t next_row_ = 0;
   double norms_[kDerivatives] = {};              // Of the derivatives of k.
   double starts_[kDerivatives] = {};             // |k^(n)(0)|.
-  double remainders_[3] = {};                    // Of each m_n, from one mesh point to the next.
+  double remainder_ = 0.0;                       // Of m_1, from one mesh point to the next.
   Span<double> exponential_re_[kMaxModes] = {};  // e^(p d), by the distance d.
   Span<double> exponential_im_[kMaxModes] = {};
   Span<double> held_re_[kMaxModes] = {};  // U_p(T - s), by s.
   Span<double> held_im_[kMaxModes] = {};
-  Span<double> impulse_;            // k.
-  Span<double> impulse_slope_;      // k'.
-  Span<double> integrals_[3] = {};  // Over s at each mesh point in t.
+  Span<double> impulse_;    // k.
+  Span<double> integrals_;  // Over s at each mesh point in t.
 };
 
 static_assert(std::is_trivially_copyable_v<KernelBounds>);
