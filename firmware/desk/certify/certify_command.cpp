@@ -108,13 +108,13 @@ Syntax syntax_of(CertifyOptions& options) {
   const std::string heading = syntax.options.back().heading;
   syntax.options.push_back(
       {"effort", heading, "SECONDS", "10", "a number of seconds above 0",
-       "how much time of the processor to spend on the bound; also\n"
-       "decides how fine the grid is",
+       "time of the processor to spend on the bound;\n"
+       "it also decides how fine the grid is",
        [&options](std::string_view text) { return take_effort(text, options.effort_s); }});
   syntax.options.push_back(
       {"rounds", heading, "N", "", "a whole number from 1 to 100000",
-       "so many rounds, however long they take: the same certificate,\n"
-       "byte for byte, on every machine",
+       "so many rounds, however long they take: the\n"
+       "same certificate, byte for byte, every time",
        [&options](std::string_view text) { return take_rounds(text, options.rounds); }});
   syntax.options.push_back(
       {"out", heading, "FILE", "", "the name of a file",
