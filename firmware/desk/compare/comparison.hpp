@@ -25,8 +25,8 @@ struct Pair {
   /// be better or worse.
   bool has_open_damping = false;
   bool told_apart = false;  ///< Compared, and the difference is beyond its uncertainty.
-  /// Able to be told apart, and even the first one's upper bound is below the second one's figure: true at the
-  /// estimates for whatever signal.
+  /// Able to be told apart, and even the first one's upper bound is below the second one's figure:
+  /// true at the estimates for whatever signal.
   bool proven = false;
 };
 

@@ -231,7 +231,7 @@ TEST(SweepBudget, UncertaintyIsThatOfTheFit) {
   const double expected = std::sqrt(2.0 / 5000.0) * std::hypot(5e-3 / 2.0, 2e-3 / 1.0);
   EXPECT_FALSE(verdict.scatters);
   EXPECT_NEAR(verdict.relative_u / expected, 1.0, 0.01);  // The phasors scatter a little.
-  EXPECT_EQ(verdict.budget.quantisation, 0.0);  // Ideal converters.
+  EXPECT_EQ(verdict.budget.quantisation, 0.0);            // Ideal converters.
 
   // Hum at the frequency: half of its square on each component.
   inputs.silent_device.hum_v[0] = 1e-3;

@@ -19,7 +19,9 @@ constexpr double kNormalQuantile = 3.0902323061678132;  // 0.1 % lie beyond.
 [[gnu::noinline]] double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
 
 // Re(a conj(b)).
-[[gnu::noinline]] double projected(Complex a, Complex b) noexcept { return a.re * b.re + a.im * b.im; }
+[[gnu::noinline]] double projected(Complex a, Complex b) noexcept {
+  return a.re * b.re + a.im * b.im;
+}
 
 // The value of chi-square over its degrees of freedom that chance exceeds once in 1000 (Wilson,
 // Hilferty 1931).
@@ -46,7 +48,7 @@ double chi_square_limit(double dof) noexcept {
 }
 
 [[gnu::noinline]] double relative_hum(const PointScatter& p, double frequency_hz, double samples,
-                    const BudgetInputs& inputs) noexcept {
+                                      const BudgetInputs& inputs) noexcept {
   const double duration_s = samples / inputs.sample_rate_hz;
   return length(
       inputs.silent_reference.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(p.reference)),
