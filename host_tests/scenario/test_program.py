@@ -566,9 +566,15 @@ class Bench(ProgramTest):
         results = json.loads((self.directory / "out/results.json").read_text())
         common = ["--reference-uncertainty", repr(results["bench"]["common_percent"])]
         again = self.json_of("--points", "out/frequency_response.csv", *common, *QUICK)
-        for name in ["S", "f0", "beta", "uS", "uf0", "ubeta", "chi2"]:
-            # 15 digits of the totals leave 12 of a part that is a thirtieth of them.
+        # 15 digits of the totals leave 12 of a part that is a thirtieth of them.
+        for name in ["S", "f0", "beta", "chi2"]:
             self.assertAlmostEqual(again["model"][name] / results["model"][name], 1, delta=1e-9)
+        # The table does not hold what the points share in other ways than by one factor. It adds to what is left.
+        for name in ["uS", "uf0", "ubeta"]:
+            self.assertLess(again["model"][name], results["model"][name])
+            self.assertGreater(again["model"][name], 0.5 * results["model"][name])
+        # Of the common factor, nearly all of u(S), the square of what is left out is 1e-6.
+        self.assertAlmostEqual(again["model"]["uS"] / results["model"]["uS"], 1, delta=1e-5)
         self.assertIsNone(again["bench"])
 
     def test_faults(self):
