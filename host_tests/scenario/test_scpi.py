@@ -194,7 +194,7 @@ class ScpiOptions(ProgramTest):
     def test_help(self) -> None:
         done = run("--help")
         self.assertEqual(done.returncode, 0)
-        for option in ("--tcp PORT", "--pace X", "--commands", "--bench-fault"):
+        for option in ("--tcp [ADDRESS:]PORT", "--pace X", "--commands", "--bench-fault"):
             self.assertIn(option, done.stdout.decode())
         self.assertLessEqual(max(len(line) for line in done.stdout.decode().splitlines()), 80)
 
