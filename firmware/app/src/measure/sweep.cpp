@@ -261,7 +261,9 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   SweepWorkspace::Target& target = work.target_;
   target = SweepWorkspace::Target();
   target.frequency_hz = frequency_hz;
-  work.level_scale_ = work.level_scale_ < 0.5 ? 2.0 * work.level_scale_ : 1.0;
+  // What the last frequency has left room for holds what the level was lowered by there.
+  const bool is_by_room = !(settings.level_mps2 < kRoomShare * work.level_room_mps2_);
+  work.level_scale_ = !is_by_room && work.level_scale_ < 0.5 ? 2.0 * work.level_scale_ : 1.0;
   // Whole periods, to the nearest frame.
   const double period = work.format_.sample_rate_hz / frequency_hz;
   const double by_duration = floor(settings.repeat_s * frequency_hz + 0.999999);
