@@ -333,6 +333,20 @@ TEST(Sweep, OverrangeLowersTheDrive) {
   run.expect_limits_kept(settings);
 }
 
+TEST(Sweep, BesideASharpResonanceTheLevelIsLoweredOnce) {
+  // 1 m/s^2 needs 28 V at 4000 Hz and 16 V at 4200 Hz.
+  BenchSettings bench;
+  bench.device.damping = 0.01;
+  SweepRun run(bench);
+  run.to_end(default_sweep_settings());
+  ASSERT_EQ(run.sweep.status, Status::kOk);
+  ASSERT_EQ(run.sweep.points().size(), 42U);
+  EXPECT_EQ(run.sweep.points()[32].point.frequency_hz, 4200.0);
+  // Half of what the resonance has left: 10 V over 25.6 V/(m/s^2). In the noise below 0.06.
+  EXPECT_NEAR(run.sweep.points()[32].acceleration_mps2, 0.195, 0.01);
+  run.expect_limits_kept(default_sweep_settings());
+}
+
 /// Both channels hear a quarter of the drive, and once, on demand, something else.
 class EchoStream final : public emax::hal::AnalogStream {
  public:
