@@ -25,7 +25,7 @@ constexpr double kTwoToMinus53 = 1.1102230246251565e-16;
 constexpr double kMaxPercent = 100.0;
 constexpr double kMaxHarmonic = 0.1;
 constexpr std::uint64_t kChannels = 0x14057B7EF767814FU;
-constexpr double kMaxClock_ppm = 1e4;
+constexpr double kMaxClockPpm = 1e4;
 /// Half of an expanded uncertainty in percent, as a fraction.
 constexpr double kStandardPerExpandedPercent = 0.005;
 /// Every so many frames what moves slowly is computed anew, so that no error of rounding adds up.
@@ -40,7 +40,7 @@ constexpr std::uint64_t kRefreshFrames = 64;
 bool uncertainties_ok(const BenchSettings& settings) noexcept {
   return not_negative(settings.skew_expanded_s) && percent(settings.crosstalk_expanded_percent) &&
          percent(settings.linearity_expanded_percent) && settings.clock_expanded_ppm >= 0.0 &&
-         settings.clock_expanded_ppm <= kMaxClock_ppm &&
+         settings.clock_expanded_ppm <= kMaxClockPpm &&
          percent(settings.reference_expanded_percent) && percent(settings.drift_expanded_percent) &&
          percent(settings.gain_expanded_percent) && percent(settings.mounting_expanded_percent);
 }
