@@ -582,7 +582,7 @@ void write_sweep_rows(const SweepResults& sweep, JsonWriter& json) noexcept {
                           point.point.u_phase_rad,
                           point.acceleration_mps2,
                           point.drive_v,
-                          point.residual_percent,
+                          static_cast<double>(point.residual_percent),
                           point.flagged ? 1.0 : 0.0,
                           point.scatters ? 1.0 : 0.0};
     write_row(nullptr, row, json);
