@@ -15,11 +15,17 @@ function(emax_list_presets kind result)
   set(${result} ${names} PARENT_SCOPE)
 endfunction()
 
-# emax_list_configurations(<result>): what can be built and is no workflow, in the order of the file.
+# emax_list_configurations(<result>): what is built in a tree of its own name, in the order of the file; not `check`
+# itself, nor what builds in the tree of another.
 function(emax_list_configurations result)
-  emax_list_presets(buildPresets configurations)
-  emax_list_presets(workflowPresets workflows)
-  list(REMOVE_ITEM configurations ${workflows})
+  emax_list_presets(buildPresets presets)
+  set(configurations "")
+  foreach(preset IN LISTS presets)
+    emax_read_preset(${preset} configuration cacheVariables EMAX_CONFIGURATION)
+    if(configuration STREQUAL "\${presetName}")
+      list(APPEND configurations ${preset})
+    endif()
+  endforeach()
   set(${result} ${configurations} PARENT_SCOPE)
 endfunction()
 
