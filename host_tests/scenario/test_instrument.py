@@ -198,7 +198,7 @@ class InstrumentFaults(ProgramTest):
             port = free.getsockname()[1]
         self.write(["not a line"], name="file")
         for name in (f"127.0.0.1:{port}", "127.0.0.1", ":5025", "127.0.0.1:", "/dev/no-such-line", "/dev/null", "./file",
-                     "no-such-host.invalid:5025"):
+                     "no-such-host.invalid:5025", "127.0.0.1:0", f"127.0.0.1:{port + 65536}", "127.0.0.1:+5025"):
             self.refuse(["report", "--instrument", name], "--instrument: ", "expected HOST:PORT")
 
     def test_options_that_exclude_each_other(self) -> None:

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <netdb.h>
@@ -31,6 +33,14 @@ constexpr std::size_t kPiece = 4096;
 
 Problem no_port(const std::string& name, const std::string& why) {
   return bad_input("--instrument: " + printable(name) + ": " + why + "; " + kExpected);
+}
+
+// The system takes one above 65535 for another one.
+bool is_port_number(const std::string& text) noexcept {
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result read = std::from_chars(text.data(), end, port);
+  return read.ec == std::errc{} && read.ptr == end && port != 0;
 }
 
 bool is_temporary(int error) noexcept {
@@ -68,6 +78,9 @@ Problem InstrumentPort::open(const std::string& name) {
   }
   if (colon == std::string::npos || colon == 0 || colon + 1 == name.size()) {
     return no_port(name, "no port");
+  }
+  if (!is_port_number(name.substr(colon + 1))) {
+    return no_port(name, "the port is no number from 1 to 65535");
   }
   std::string host = name.substr(0, colon);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
