@@ -83,11 +83,17 @@ TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {
   EXPECT_EQ(results.status(), Status::kOk);
   EXPECT_NEAR(results.energy_v2s(), 3.44175215e-8, 0.5e-16);
   EXPECT_EQ(results.trend_looked_at, 5U);
-  EXPECT_EQ(results.trend_count, 5U) << "two switches in each of 550 periods at most, for 2048";
+  // Two switches in each of 550 periods at most. A board has room for those of 2 ms alone, and one
+  // length is no trend.
+  constexpr bool kHasRoom = emax::kMaxSwitches >= 2048;
+  EXPECT_EQ(results.trend_count, kHasRoom ? 5U : 0U);
   Settings asked = emax::app::kDefaultSettings;
   asked.trend_s = {0.002, 1.0};
   asked.trend_count = 2;
   EXPECT_EQ(evaluated({{0.0102, 55000.0, 0.01}, {}}, asked).status(), Status::kTooManyCells);
+  if (!kHasRoom) {
+    return;
+  }
   // 2200 switches in 10 ms.
   EvaluationResults& longer = emax::test::shared_evaluation();
   ASSERT_EQ(
