@@ -32,6 +32,14 @@ emax_leave_out(test_sim_noise
   SimNoise.DensityIsNormal
   SimNoise.IsWhite)
 
+# Hundreds of sweeps, and whole evaluations with all their guards.
+emax_leave_out(test_sweep_faults
+  SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
+  SweepFaults.AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration)
+emax_leave_out(test_evaluation_figures
+  EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom
+  EvaluationFigures.GuardsEachUncertainty)
+
 # Slow ones, measured; the board's limit keeps all the others together at a minute or so.
 get_property(left_out GLOBAL PROPERTY EMAX_LEFT_OUT_TESTS)
 list(JOIN left_out "\n" left_out)
