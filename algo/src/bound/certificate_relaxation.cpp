@@ -113,26 +113,11 @@ double EnergyCertificate::lagrangian(const double* point, double* gradient) noex
     }
   }
   for (std::size_t i = 0; i < cells; ++i) {
-    const double* const row = matrix_ + i * cells;
-    double g[kRank] = {};
-    double odd[kRank] = {};
-    std::size_t j = 0;
-    for (; j + 1 < cells; j += 2) {
-      const double* const v = vectors_ + j * kRank;
-      for (std::size_t r = 0; r < kRank; ++r) {
-        g[r] += row[j] * v[r];
-        odd[r] += row[j + 1] * v[kRank + r];
-      }
-    }
-    for (; j < cells; ++j) {
-      for (std::size_t r = 0; r < kRank; ++r) {
-        g[r] += row[j] * vectors_[j * kRank + r];
-      }
-    }
+    double g[kRank];
+    multiply_row(i, g);
     double along = 0.0;
     double square = point[kRank * cells + i] * point[kRank * cells + i];
     for (std::size_t r = 0; r < kRank; ++r) {
-      g[r] += odd[r];
       along += g[r] * vectors_[i * kRank + r];
       square += point[i * kRank + r] * point[i * kRank + r];
     }

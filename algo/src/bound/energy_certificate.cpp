@@ -258,31 +258,42 @@ void EnergyCertificate::apply(const TriangleMultiplier& multiplier, double amoun
   matrix_[k * cells + i] -= ik;
 }
 
+// Two sums beside one another, so that an addition need not wait for the one before.
+void EnergyCertificate::multiply_row(std::size_t i, double (&g)[kRank]) const noexcept {
+  const std::size_t cells = grid_.cells;
+  const double* const row = matrix_ + i * cells;
+  double even[kRank] = {};
+  double odd[kRank] = {};
+  std::size_t j = 0;
+  for (; j + 1 < cells; j += 2) {
+    const double* const v = vectors_ + j * kRank;
+    for (std::size_t r = 0; r < kRank; ++r) {
+      even[r] += row[j] * v[r];
+      odd[r] += row[j + 1] * v[kRank + r];
+    }
+  }
+  for (; j < cells; ++j) {
+    for (std::size_t r = 0; r < kRank; ++r) {
+      even[r] += row[j] * vectors_[j * kRank + r];
+    }
+  }
+  for (std::size_t r = 0; r < kRank; ++r) {
+    g[r] = even[r] + odd[r];
+  }
+}
+
 // The mixing method: each vector in turn takes its best place, of length 1 or less.
 double EnergyCertificate::sweep() noexcept {
   const std::size_t cells = grid_.cells;
   double value = 0.0;
   for (std::size_t i = 0; i < cells; ++i) {
     const double* const row = matrix_ + i * cells;
-    double g[kRank] = {};
-    double odd[kRank] = {};
-    std::size_t j = 0;
-    for (; j + 1 < cells; j += 2) {
-      const double* const v = vectors_ + j * kRank;
-      for (std::size_t r = 0; r < kRank; ++r) {
-        g[r] += row[j] * v[r];
-        odd[r] += row[j + 1] * v[kRank + r];
-      }
-    }
-    for (; j < cells; ++j) {
-      for (std::size_t r = 0; r < kRank; ++r) {
-        g[r] += row[j] * vectors_[j * kRank + r];
-      }
-    }
+    double g[kRank];
+    multiply_row(i, g);
     double* const own = vectors_ + i * kRank;
     double square = 0.0;
     for (std::size_t r = 0; r < kRank; ++r) {
-      g[r] += odd[r] - row[i] * own[r];
+      g[r] -= row[i] * own[r];
       square += g[r] * g[r];
     }
     // 2 g v + q v^2 is largest at length 1, or inside if q is far below 0.

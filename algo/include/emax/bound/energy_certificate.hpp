@@ -174,6 +174,8 @@ class EnergyCertificate {
   double add_violated() noexcept;
 
   // energy_certificate.cpp
+  /// A row of the matrix times the vectors.
+  void multiply_row(std::size_t i, double (&g)[kCertificateRank]) const noexcept;
   double sweep() noexcept;
   void step_multipliers(double length) noexcept;
   void fix_multipliers() noexcept;
