@@ -24,10 +24,10 @@ class TcpStream final : public ConsolePort {
   TcpStream() noexcept = default;
   ~TcpStream();
 
-  /// @param[in] address Of IPv4, in numbers: 127.0.0.1 for this machine alone, 0.0.0.0 for all.
-  /// @param[in] port    0 for one that the system chooses.
+  /// @param[in] host Of IPv4, in numbers: 127.0.0.1 for this machine alone, 0.0.0.0 for all.
+  /// @param[in] port 0 for one that the system chooses.
   /// @returns Why the port cannot be had, if so.
-  desk::Problem listen(const std::string& address, std::uint16_t port);
+  desk::Problem listen(const std::string& host, std::uint16_t port);
   std::uint16_t port() const noexcept { return port_; }
 
   void wait(std::chrono::microseconds time, Wishes wishes) override;
