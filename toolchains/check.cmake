@@ -102,14 +102,14 @@ list(FILTER drivers EXCLUDE REGEX "/board[.]cpp$")
 list(APPEND common ${drivers})
 foreach(source IN LISTS tidied common)
   add_test(NAME style.tidy.${source}
-    COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${PROJECT_SOURCE_DIR}/build/host-clang
+    COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${PROJECT_SOURCE_DIR}/build/host-sanitize
       ${PROJECT_SOURCE_DIR}/${source})
 endforeach()
 # cmake --build build/check --target analyze, by hand: with the analyzer it takes four times as long.
 list(TRANSFORM tidied PREPEND ${PROJECT_SOURCE_DIR}/)
 list(TRANSFORM common PREPEND ${PROJECT_SOURCE_DIR}/)
 add_custom_target(analyze
-  COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-clang ${tidied} ${common} VERBATIM)
+  COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-sanitize ${tidied} ${common} VERBATIM)
 
 get_property(tests DIRECTORY PROPERTY TESTS)
 set_tests_properties(${tests} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT})
