@@ -2,6 +2,7 @@
 #include "emax/bound/energy_bound.hpp"
 
 #include <limits>
+#include <new>
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
@@ -11,6 +12,7 @@
 #include "emax/bound/response_sizes.hpp"
 #include "emax/energy/known_energy.hpp"
 #include "emax/energy/phi_operator.hpp"
+#include "emax/model/in_band.hpp"
 
 namespace emax {
 namespace {
@@ -78,6 +80,9 @@ constexpr double kLiftResolution = 2e-5;
 constexpr double kFirstRaise = 2e-5;
 /// With as many modes the trial is off by more than 1e-4, and the check bisects itself.
 constexpr std::size_t kManyModes = 7;
+/// With the sensor's pole so near to one of the filter's, modes may cancel beyond single precision:
+/// the check bisects from the start. In-band the proposal is that of a sensor so far away.
+constexpr double kApart = 0.01;
 /// A cell whose vectors have no more length than this is left without a direction.
 constexpr float kNoLength2 = 1e-30F;
 constexpr std::uint32_t kSeed[] = {1, 2, 3, 4};
@@ -162,13 +167,13 @@ void DissipationCheck::fill_inputs(const ModalModel& model) noexcept {
 }
 
 void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
+  // K v = k(0) Q' + k'(0) Q + the convolution of k'' and Q; v = (Q')' with Q' of mean zero.
+  const ResponseSizes sizes = response_sizes(model, duration_s_);
+  remainder_ = sizes.start * step_s_ / kTwoPi +
+               step_s_ * step_s_ / kClampedBeam * (sizes.slope + sizes.curvature);
+  mixed_remainder_ = 0.0;
+  model_rounding_ = kTermRounding * duration_s_ * sizes.terms * sizes.terms;
   if (criterion_ == Criterion::kInBandError) {
-    // K v = k(0) Q' + k'(0) Q + the convolution of k'' and Q; v = (Q')' with Q' of mean zero.
-    const ResponseSizes sizes = response_sizes(model, duration_s_);
-    remainder_ = sizes.start * step_s_ / kTwoPi +
-                 step_s_ * step_s_ / kClampedBeam * (sizes.slope + sizes.curvature);
-    mixed_remainder_ = 0.0;
-    model_rounding_ = kTermRounding * duration_s_ * sizes.terms * sizes.terms;
     return;
   }
   const Accelerometer& device = model.device();
@@ -191,8 +196,8 @@ void DissipationCheck::fill_limits(const ModalModel& model) noexcept {
   const double filter_remainder =
       filter.gain * (filter.relative_degree == 1 ? wc * step_s_ / kTwoPi : beam * wc * wc);
   if (criterion_ == Criterion::kIntegralSquareError) {
-    remainder_ = device_remainder + filter_remainder;
-    mixed_remainder_ = 0.0;
+    // Sensor and filter apart: worse than their difference where they are alike.
+    remainder_ = smaller(remainder_, device_remainder + filter_remainder);
     return;
   }
   remainder_ = device_remainder;
@@ -334,7 +339,7 @@ Status EnergyBound::start(const ModalModel& model, double duration_s,
   if (status != Status::kOk) {
     return status;
   }
-  begin_proposal(model);
+  begin_proposal(model, workspace);
   workspace.share_nothing();
   vector_ = 0;
   sweeps_ = 0;
@@ -356,12 +361,21 @@ double EnergyBound::resolved_time(const ModalModel& model, double duration_s,
   return ringing_s > kLongRinging * resolved_s ? smaller(duration_s, 2.0 * resolved_s) : resolved_s;
 }
 
-void EnergyBound::begin_proposal(const ModalModel& model) noexcept {
+void EnergyBound::begin_proposal(const ModalModel& model, GridWorkspace& workspace) noexcept {
+  const Accelerometer apart = with_simple_poles(model.device(), model.filter(), kApart);
+  cancels_ = apart.natural_frequency_hz != model.device().natural_frequency_hz;
+  const ModalModel* source = &model;
+  if (cancels_ && model.criterion() == Criterion::kInBandError) {
+    auto* const place = new (workspace.numbers().data()) ModalModel;  // Free until the vectors.
+    (void)place->set(apart, model.filter(),
+                     {model.criterion(), {DelayMode::kGiven, model.delay_s()}});
+    source = place;
+  }
   PhiOperator phi;
-  (void)phi.set(model, proposal_s_, cells_);
-  phi_.set(model, phi);
+  (void)phi.set(*source, proposal_s_, cells_);
+  phi_.set(*source, phi);
   const double cell_s = proposal_s_ / static_cast<double>(cells_);
-  shift_ = static_cast<float>(ascent_shift(model, cell_s) / phi_.scale());
+  shift_ = static_cast<float>(ascent_shift(*source, cell_s) / phi_.scale());
 }
 
 /// One vector; all of them together are one sequence of random numbers.
@@ -515,7 +529,7 @@ void EnergyBound::next_check(bool passed) noexcept {
   (passed ? passed_ : failed_) = lift_;
   ++checks_;
   check_.restart();
-  const bool is_bisecting = count_of_modes_ >= kManyModes && checks_ < kMaxChecks;
+  const bool is_bisecting = (cancels_ || count_of_modes_ >= kManyModes) && checks_ < kMaxChecks;
   const bool has_passed = passed_ < kInfinity;
   if (has_passed && !(is_bisecting && passed_ - failed_ >= kLiftResolution)) {
     phase_ = Phase::kDone;
@@ -568,7 +582,9 @@ Status EnergyBound::step(const ModalModel& model, GridWorkspace& workspace) noex
       sweep(workspace);
       if (sweeps_ == kSweeps) {
         take_proposal(workspace);
-        phase_ = Phase::kTrial;
+        phase_ = cancels_ ? Phase::kCheck : Phase::kTrial;
+        guess_ = 0.0;
+        raise_ = kFirstLift;
         begin_lifts(kFirstLift);
       }
       return Status::kOk;

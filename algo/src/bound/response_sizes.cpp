@@ -32,11 +32,13 @@ ResponseSizes response_sizes(const ModalModel& model, double duration_s) noexcep
     sizes.terms += size * (life_s < duration_s ? life_s : duration_s);
     curve[i] = residue * pole * pole;
   }
-  // Terms that are 0 by their relative degree are 0, whatever their sums are.
+  // Terms that are 0 by their relative degree are 0, whatever their sums are: that of the filter,
+  // or of the sensor alone, which is 2.
+  const bool is_in_band = model.criterion() == Criterion::kInBandError;
   const bool delayed = model.delay_s() > 0.0;
   const int degree = model.filter().relative_degree;
   sizes.start = degree >= 2 && !delayed ? 0.0 : abs(start) + kRounding * start_terms;
-  sizes.slope = degree >= 3 && !delayed ? 0.0 : abs(slope) + kRounding * slope_terms;
+  sizes.slope = degree >= 3 && !delayed && is_in_band ? 0.0 : abs(slope) + kRounding * slope_terms;
   double energy = 0.0;
   double energy_terms = 0.0;
   for (std::size_t i = 0; i < modes.size(); ++i) {

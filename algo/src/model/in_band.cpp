@@ -26,13 +26,13 @@ Complex unit_transfer(const ReferenceFilter& filter, Complex s) noexcept {
   return product;
 }
 
-Accelerometer with_simple_poles(const Accelerometer& device,
-                                const ReferenceFilter& filter) noexcept {
+Accelerometer with_simple_poles(const Accelerometer& device, const ReferenceFilter& filter,
+                                double distance) noexcept {
   Accelerometer moved = device;
   const Complex pole = mode_of(device).pole;
   for (const Mode& mode : filter.terms()) {
-    if (norm(pole - mode.pole) < kPoleDistance * kPoleDistance * norm(pole)) {
-      const double away = norm(mode.pole) > norm(pole) ? -kPoleDistance : kPoleDistance;
+    if (norm(pole - mode.pole) < distance * distance * norm(pole)) {
+      const double away = norm(mode.pole) > norm(pole) ? -distance : distance;
       moved.natural_frequency_hz = device.natural_frequency_hz * (1.0 + away);
     }
   }

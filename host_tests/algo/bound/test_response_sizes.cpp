@@ -53,6 +53,21 @@ TEST(ResponseSizes, AreNotBelowTheTrueOnes) {
   }
 }
 
+TEST(ResponseSizes, OfTheSensorItselfStartWithItsSlope) {
+  // k'(0) = S w0^2 of the sensor, whatever the order of the filter: its own is 0 from order 3 on.
+  const double w0 = 2.0 * std::acos(-1.0) * 4073.0;
+  for (const int order : {3, 10}) {
+    ModalModel model{};
+    ASSERT_EQ(
+        model.set(test::kPaperDevice, {order, 1000.0, 1.037}, Criterion::kIntegralSquareError),
+        Status::kOk);
+    const ResponseSizes sizes = response_sizes(model, 2e-3);
+    EXPECT_EQ(sizes.start, 0.0);
+    EXPECT_GE(sizes.slope, (1.0 - 1e-12) * 1.037 * w0 * w0);
+    EXPECT_LE(sizes.slope, (1.0 + 1e-9) * 1.037 * w0 * w0);
+  }
+}
+
 TEST(EnergyBound, OfAShortTimeIsTheEnergyOfTheConstantSignal) {
   for (const double duration_s : {1e-9, 1e-7, 1e-4}) {
     const ModalModel model = test::paper_model();

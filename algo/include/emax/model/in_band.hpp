@@ -17,11 +17,10 @@ inline constexpr double kPoleDistance = 3e-4;
 /// The sensor whose poles the modes take: K(s) = (Ka(s) - G) Kf(s)/G has a double pole where the
 /// sensor's is one of the filter's, and its partial fractions cancel near there.
 ///
-/// @returns The sensor itself, or with its f0 moved by kPoleDistance, away from a pole of the
-/// filter
-///   that is nearer than that part of it.
-Accelerometer with_simple_poles(const Accelerometer& device,
-                                const ReferenceFilter& filter) noexcept;
+/// @returns The sensor itself, or with its f0 moved by `distance` as part of it, away from a pole
+///   of the filter that is nearer than that.
+Accelerometer with_simple_poles(const Accelerometer& device, const ReferenceFilter& filter,
+                                double distance = kPoleDistance) noexcept;
 
 /// @returns A bound of the integral of the change of ka by that move, in V/(m/s^2): f0 times
 /// dka/df0
