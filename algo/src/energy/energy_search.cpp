@@ -105,12 +105,15 @@ void clear(MaximumEnergy& maximum) noexcept {
   maximum.at_rest = false;
 }
 
-std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
+double grid_cell_s(const ModalModel& model) noexcept {
   const bool is_difference = model.criterion() == Criterion::kEnergyDifference;
   const double band_hz = is_difference ? kFinerForDifference * model.filter().band_hz : 0.0;
   const double grid_hz = model.grid_hz();
-  const std::size_t cells =
-      cells_for(duration_s, 1.0 / (kCellsPerPeriod * (grid_hz > band_hz ? grid_hz : band_hz)));
+  return 1.0 / (kCellsPerPeriod * (grid_hz > band_hz ? grid_hz : band_hz));
+}
+
+std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept {
+  const std::size_t cells = cells_for(duration_s, grid_cell_s(model));
   return cells < kMinCells ? kMinCells : cells;
 }
 

@@ -48,9 +48,12 @@ struct MaximumEnergy {
 /// Makes it as before a search; nothing of its 2 KiB passes over the stack.
 void clear(MaximumEnergy& maximum) noexcept;
 
-/// The number of cells of the grid of `Method::kBest`: cells of at most 1/(12 f) with f the larger
-/// of f0 and fc, so that the resonance is seen, and at least 24 of them. For the energy difference
-/// 4 fc counts instead of fc: there, fast switching takes away what the filter would pass.
+/// The widest cell of the grid of `Method::kBest`, in s: 1/(12 f) with f the larger of f0 and fc,
+/// so that the resonance is seen. For the energy difference 4 fc counts instead of fc: there, fast
+/// switching takes away what the filter would pass.
+double grid_cell_s(const ModalModel& model) noexcept;
+
+/// The number of cells of that grid, at least 24.
 ///
 /// @returns kMaxCells + 1 if it takes more than kMaxCells.
 std::size_t grid_cells(const ModalModel& model, double duration_s) noexcept;

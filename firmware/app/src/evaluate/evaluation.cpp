@@ -147,6 +147,8 @@ void Evaluation::go_on() noexcept {
     begin_energy();
   } else if (goal != Goal::kModel && !results_.is_bound_done) {
     begin_bound();
+  } else if (wants_trend(goal) && !results_.has_trend && results_.settings.trend_count != 0) {
+    results_.stage = Stage::kTrend;
   } else if ((needs_trials(goal, results_.settings) || wants_uncertainty(goal)) &&
              results_.is_damping_open() && !results_.is_cut_done) {
     begin_cut_range();
@@ -158,8 +160,6 @@ void Evaluation::go_on() noexcept {
   } else if (wants_uncertainty(goal) && !results_.uncertainty.is_done &&
              results_.has_uncertainty()) {
     begin_uncertainty();
-  } else if (wants_trend(goal) && !results_.has_trend && results_.settings.trend_count != 0) {
-    results_.stage = Stage::kTrend;
   } else {
     results_.stage = Stage::kDone;
   }

@@ -66,13 +66,13 @@ void Evaluation::begin_figure(Stage stage) noexcept {
   using Phase = EvaluationWorkspace::FigurePhase;
   results_.stage = stage;
   work_.figure_phase_ = Phase::kSearch;
-  if (stage == Stage::kIdeal && results_.settings.criterion == Criterion::kInBandError) {
-    results_.ideal = {true, Status::kOk, 0.0};  // An ideal sensor has no error in band.
+  auto* const part = new (&work_.part_.figure) EvaluationWorkspace::FigurePart;
+  Status status = set_figure_model(part->model);
+  if (stage == Stage::kIdeal && part->model.is_nothing()) {
+    results_.ideal = {true, status, 0.0};  // In band, with the filter's gain.
     work_.figure_phase_ = Phase::kEnd;
     return;
   }
-  auto* const part = new (&work_.part_.figure) EvaluationWorkspace::FigurePart;
-  Status status = set_figure_model(part->model);
   if (stage == Stage::kIdeal && results_.settings.criterion == Criterion::kEnergyDifference) {
     // The energy of what an ideal sensor passes, less as little as the filter can pass: nothing.
     const double limit = fast_switching_limit(part->model, results_.settings.duration_s);

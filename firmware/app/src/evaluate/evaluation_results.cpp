@@ -83,6 +83,13 @@ void EvaluationResults::clear() noexcept {
   drop_trend();
 }
 
+const char* FigureResults::refusal() const noexcept {
+  // Device and settings are valid, but for a gain of 0.
+  return status == Status::kInvalidArgument
+             ? "The filter has a gain of 0, so there is no error in its band; give another gain."
+             : explain(status);
+}
+
 void FigureResults::clear() noexcept {
   is_done = false;
   status = Status::kOk;

@@ -544,7 +544,7 @@ void Evaluation::end_trend() noexcept {
     results_.trend_count = 0;  // No line.
     results_.trend = {};
     results_.has_trend = true;
-    results_.stage = Stage::kDone;
+    go_on();
     return;
   }
   for (std::size_t i = 0; i < results_.trend_count; ++i) {
@@ -558,7 +558,7 @@ void Evaluation::end_trend() noexcept {
     return;
   }
   results_.has_trend = true;
-  results_.stage = Stage::kDone;
+  go_on();
 }
 
 }  // namespace emax::app

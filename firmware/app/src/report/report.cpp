@@ -110,7 +110,21 @@ void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept 
   out.line();
 }
 
-void write_method(const Settings& settings, ReportWriter& out) noexcept {
+void write_delay(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double delay_s = results.model.delay_s();
+  out.line();
+  out.indent();
+  if (results.settings.delay_choice == DelayChoice::kNone) {
+    out.text("the reference without a delay");
+    return;
+  }
+  const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
+  out.text("the reference delayed by ").general(kMicro * delay_s, 5).text(" us, ");
+  out.text(is_given ? "as given" : "the sensor's delay");
+}
+
+void write_method(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const Settings& settings = results.settings;
   out.label("Criterion");
   switch (settings.criterion) {
     case Criterion::kIntegralSquareError:
@@ -121,6 +135,7 @@ void write_method(const Settings& settings, ReportWriter& out) noexcept {
       break;
     case Criterion::kInBandError:
       out.text("in-band error: energy of the filter on sensor minus G x");
+      write_delay(results, out);
       break;
   }
   out.line();
@@ -154,7 +169,7 @@ void write_input(const EvaluationResults& results, const ReportContext& context,
   out.label("Limit a").general(results.limit_mps2, 7).text(" m/s^2");
   out.and_g(results.limit_mps2, 7);
   out.text(settings.limit_is_auto ? ", the number of S" : ", as given").line();
-  write_method(settings, out);
+  write_method(results, out);
   write_random_numbers(settings, out);
 }
 
@@ -356,7 +371,13 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   const Peak& peak = results.peak;
   const SettlingTime& settling = results.settling_time;
   out.heading(ReportSection::kErrorSystem,
-              "ERROR SYSTEM (impulse response k = sensor minus filter)");
+              results.settings.criterion == Criterion::kInBandError
+                  ? "ERROR SYSTEM (impulse response k of the in-band error)"
+                  : "ERROR SYSTEM (impulse response k = sensor minus filter)");
+  if (results.model.is_nothing()) {
+    out.part(ReportPart::kText).text("  k is 0: the sensor is the filter.\n");
+    return;
+  }
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
   out.fixed(kMicro * peak.time_s, 2).text(" us").line();
   out.label("5 % settling time");
@@ -372,7 +393,10 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
         .text(
             " than the settling time, so the error has not developed within\n"
             "  T. The paper takes T from the settling time: give a T of ");
-    out.general(kMilli * settling.time_s, 3).text(" ms or more.\n");
+    constexpr int kDigits = 3;
+    const double least_ms = kMilli * settling.time_s;
+    const int decimals = decimals_of(least_ms, kDigits);
+    out.fixed(rounded_up(least_ms, decimals), decimals).text(" ms or more.\n");
   }
 }
 
@@ -409,17 +433,10 @@ void write_how_found(const EvaluationResults& results, ReportWriter& out) noexce
 }
 
 void write_bound(const EvaluationResults& results, ReportWriter& out) noexcept {
-  out.label("Upper bound");
-  if (!results.has_bound) {
-    out.text("none passed its check for this device and time").line();
-    return;
-  }
   const double energy = results.energy_v2s();
   const double bound = results.bound_v2s;
-  out.scientific(bound, 8)
-      .text(" V^2 s: proven, no signal of any shape within +-a has more")
-      .line();
-  if (energy > 0.0) {
+  write_upper_bound(results.has_bound, bound, out);
+  if (results.has_bound && energy > 0.0) {
     out.label("Gap").general(kPercent * (bound - energy) / energy, 4);
     out.text(" % of E; the true maximum lies between the two").line();
   }
@@ -428,14 +445,17 @@ void write_bound(const EvaluationResults& results, ReportWriter& out) noexcept {
 void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept {
   const double energy = results.energy_v2s();
   out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
+  const Criterion criterion = results.settings.criterion;
   out.label("E").scientific(energy, 8).text(" V^2 s = ").general(kMilli * energy, 5);
-  out.text(" mV^2 s (the paper prints \"mV m^2\")").line();
+  out.text(criterion == Criterion::kInBandError ? " mV^2 s"
+                                                : " mV^2 s (the paper prints \"mV m^2\")");
+  out.line();
   out.label("xi = E/(a^2 T)").general(results.xi(), 7).text(" (V/(m/s^2))^2");
   if (out.in_g()) {
     out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");
   }
   out.line();
-  const bool is_error = results.settings.criterion != Criterion::kEnergyDifference;
+  const bool is_error = criterion != Criterion::kEnergyDifference;
   out.label(is_error ? "rms error sqrt(E/T)" : "sqrt(E/T)");
   if (energy >= 0.0) {
     const double full = results.device.estimate.sensitivity * results.limit_mps2;
@@ -444,11 +464,19 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   } else {
     out.text("none, the energy difference is negative").line();
   }
+  if (results.model.is_nothing()) {
+    out.part(ReportPart::kText)
+        .text("  The sensor is the filter, so the error is 0 for every signal.\n");
+    return;
+  }
   const SwitchingSignal& signal = results.maximum.signal;
   write_switching_times(signal.count(), signal.times_s(), out);
   write_how_found(results, out);
   if (results.settings.method == Method::kBest) {
-    out.part(ReportPart::kText).text("  The best signal found.\n");
+    out.part(ReportPart::kText)
+        .text(is_error ? "  The best signal found.\n"
+                       : "  The best signal found that stays at +-a; one between the limits may "
+                         "have more.\n");
   } else {
     out.part(ReportPart::kText)
         .text("  Where the paper's procedure ends; other signals may reach more (method best).\n");
@@ -457,7 +485,7 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   out.label("Largest |y|");
   if (results.has_absolute_error) {
     out.general(results.absolute_error_v, 7);
-    out.text(" V, by another signal: a times the integral of |k|").line();
+    out.text(" V, of any signal: a times the integral of |k|").line();
   } else {
     out.text("not computed: k moves too often for so long a T").line();
   }
@@ -694,10 +722,13 @@ void write_failure(const EvaluationResults& results, TextWriter& out) noexcept {
   }
   out.text(failure.reason);
   if (failure.duration_s > 0.0) {
-    out.text(" (T = ").general(failure.duration_s, 10).text(" s)");
-  }
-  if (failure.status == Status::kTooManyCells && failure.stage == Stage::kMonteCarlo) {
-    out.text(" (The room is for ").integer(GridWorkspace::kMaxTrialCells).text(" cells.)");
+    out.text(" (T = ").general(failure.duration_s, 10).text(" s");
+    if (failure.longest_s > 0.0) {
+      constexpr int kDigits = 4;
+      const int decimals = decimals_of(failure.longest_s, kDigits);
+      out.text(", at most ").general(rounded_down(failure.longest_s, decimals), 10).text(" s");
+    }
+    out.text(")");
   }
   if (failure.stage != Stage::kFitDraws) {
     return;

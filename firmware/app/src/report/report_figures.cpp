@@ -1,6 +1,7 @@
 // Figures in percent of S a, with as many digits as their uncertainty carries.
 #include "report_figures.hpp"
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 namespace emax::app {
@@ -14,26 +15,12 @@ constexpr std::size_t kNameWidth = 44;
 constexpr std::size_t kNumberWidth = 14;
 constexpr int kMostDecimals = 12;
 
-/// As many decimals as give `value` this many significant digits.
-int decimals_of(double value, int digits) noexcept {
-  double least = 1.0;
-  for (int i = 1; i < digits; ++i) {
-    least *= 10.0;
+double power_of_ten(int exponent) noexcept {
+  double power = 1.0;
+  for (int i = 0; i < exponent; ++i) {
+    power *= 10.0;
   }
-  int decimals = 0;
-  for (double scaled = value; scaled < 0.995 * least && decimals < kMostDecimals; scaled *= 10.0) {
-    ++decimals;
-  }
-  return decimals;
-}
-
-/// A number that is no less in so many decimals.
-double rounded_up(double value, int decimals) noexcept {
-  double scale = 1.0;
-  for (int i = 0; i < decimals; ++i) {
-    scale *= 10.0;
-  }
-  return -floor(-value * scale) / scale;
+  return power;
 }
 
 struct Row {
@@ -44,26 +31,44 @@ struct Row {
   double bound_percent;
 };
 
+/// In so many decimals; a number so small that the column has no room for them has an exponent.
+void write_cell(double percent, int decimals, int digits, ReportWriter& out) noexcept {
+  constexpr int kMostPlain = 9;
+  out.cell(kNumberWidth);
+  if (percent == 0.0) {
+    out.integer(0);
+  } else if (decimals > kMostPlain) {
+    out.scientific(percent, digits - 1);
+  } else {
+    out.fixed(percent, decimals);
+  }
+}
+
 void write_row(const Row& row, ReportWriter& out) noexcept {
   constexpr int kDigitsOfU = 2;
   constexpr int kDigitsAlone = 4;
+  constexpr double kHalfOfLastDigit = 5e-4;
   const bool has_u = row.expanded > 0.0;
   const int decimals =
       has_u ? decimals_of(row.expanded, kDigitsOfU) : decimals_of(row.percent, kDigitsAlone);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(kNameWidth).text(row.name);
-  out.cell(kNumberWidth).fixed(row.percent, decimals);
+  write_cell(row.percent, decimals, kDigitsAlone, out);
   if (has_u) {
-    out.cell(kNumberWidth).fixed(row.expanded, decimals);
+    write_cell(row.expanded, decimals, kDigitsOfU, out);
   } else {
     out.cell(kNumberWidth).text("-");
   }
   if (row.has_bound) {
     const int of_bound = decimals_of(row.bound_percent, kDigitsAlone);
-    out.cell(kNumberWidth).fixed(rounded_up(row.bound_percent, of_bound), of_bound).line();
+    const bool is_tiny = of_bound == kMostDecimals;
+    write_cell(is_tiny ? row.bound_percent * (1.0 + kHalfOfLastDigit)
+                       : rounded_up(row.bound_percent, of_bound),
+               of_bound, kDigitsAlone, out);
   } else {
-    out.cell(kNumberWidth).text("-").line();
+    out.cell(kNumberWidth).text("-");
   }
+  out.line();
 }
 
 Row row_of(const char* name, const EvaluationResults& results,
@@ -76,25 +81,30 @@ Row row_of(const char* name, const EvaluationResults& results,
 
 void write_papers_rows(const EvaluationResults& results, ReportWriter& out) noexcept {
   const double energy = results.energy_v2s();
-  if (results.settings.criterion == Criterion::kInBandError || energy < 0.0) {
+  const Criterion criterion = results.settings.criterion;
+  if (energy < 0.0) {
     return;
   }
-  const EnergyUncertainty& known = results.uncertainty;
-  const bool has_u = known.exists() && is_finite(known.u_percent);
-  write_row({"The paper's figure, sqrt(E/T)", results.percent_of(energy),
-             has_u ? kCoverageFactor * known.u_percent : 0.0, results.has_bound,
-             results.percent_of(results.bound_v2s)},
-            out);
-  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
+  if (criterion != Criterion::kInBandError) {
+    const EnergyUncertainty& known = results.uncertainty;
+    const bool has_u = known.exists() && is_finite(known.u_percent);
+    const bool is_error = criterion == Criterion::kIntegralSquareError;
+    write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
+               results.percent_of(energy), has_u ? kCoverageFactor * known.u_percent : 0.0,
+               results.has_bound, results.percent_of(results.bound_v2s)},
+              out);
+  }
+  if (results.ideal.exists() &&
+      (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {
     write_row({"The same of an ideal sensor, K = S", results.percent_of(results.ideal.energy_v2s),
                0.0, false, 0.0},
               out);
   }
 }
 
-void write_refusal(const char* name, Status status, ReportWriter& out) noexcept {
+void write_refusal(const char* name, const FigureResults& figure, ReportWriter& out) noexcept {
   out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(":\n  ");
-  out.text(explain(status)).line();
+  out.text(figure.refusal()).line();
 }
 
 void write_interval(const char* name, const CoverageInterval& interval, double probability,
@@ -112,13 +122,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
   out.label("rms error sqrt(E/T)").general(sqrt(figure.energy_v2s / duration_s), 5);
   out.text(" V = ").general(results.percent_of(figure.energy_v2s), 4).text(" % of S a").line();
   write_switching_times(figure.switches, figure.times_s(), out);
-  out.label("Upper bound");
-  if (figure.has_bound) {
-    out.scientific(figure.bound_v2s, 8).text(" V^2 s: proven, no signal within +-a has more");
-    out.line();
-  } else {
-    out.text("none passed its check for this device and time").line();
-  }
+  write_upper_bound(figure.has_bound, figure.bound_v2s, out);
   const EnergyUncertainty& known = figure.uncertainty;
   if (known.exists()) {
     out.label("u(E); U (k = 2)").scientific(known.u_v2s, 2).text("; ");
@@ -131,6 +135,24 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
 }
 
 }  // namespace
+
+int decimals_of(double value, int digits) noexcept {
+  const double least = power_of_ten(digits - 1);
+  int decimals = 0;
+  for (double scaled = value; scaled < 0.995 * least && decimals < kMostDecimals; scaled *= 10.0) {
+    ++decimals;
+  }
+  return decimals;
+}
+
+double rounded_down(double value, int decimals) noexcept {
+  const double scale = power_of_ten(decimals);
+  return floor(value * scale) / scale;
+}
+
+double rounded_up(double value, int decimals) noexcept {
+  return 0.0 - rounded_down(-value, decimals);  // Never -0.
+}
 
 void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
   if (guard.searches == 0) {
@@ -147,6 +169,16 @@ void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
             "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "
             "and\n"
             "  intervals are too low; give smaller uncertainties.\n");
+  }
+}
+
+void write_upper_bound(bool exists, double bound_v2s, ReportWriter& out) noexcept {
+  out.label("Upper bound");
+  if (exists) {
+    out.scientific(bound_v2s, 8);
+    out.text(" V^2 s: proven at the estimates, no signal within +-a has more").line();
+  } else {
+    out.text("none passed its check for this device and time").line();
   }
 }
 
@@ -170,7 +202,7 @@ void write_switching_times(std::size_t switches, Span<const double> times_s,
 
 void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept {
   out.heading(ReportSection::kFigures,
-              "THE FIGURES (worst rms error of any signal within +-a, in percent of S a)");
+              "THE FIGURES (at the estimates; worst rms error of signals within +-a, in % of S a)");
   out.part(ReportPart::kTable);
   out.part(ReportPart::kHead);
   out.cell(0).text("  ").left(kNameWidth).text("error");
@@ -185,23 +217,32 @@ void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept
   }
   write_papers_rows(results, out);
   if (!results.band.exists()) {
-    write_refusal("in band", results.band.status, out);
+    write_refusal("in band", results.band, out);
   } else if (!results.matched.exists()) {
-    write_refusal("in band with the delay taken out", results.matched.status, out);
+    write_refusal("in band with the delay taken out", results.matched, out);
   }
   out.part(ReportPart::kText)
       .text(
-          "  In band: what the sensor does wrong within the filter's band; 0 for an ideal sensor.\n"
-          "  The paper's figure also holds the filter's delay and what the filter keeps out: "
-          "compare\n"
-          "  it with that of an ideal sensor.\n");
+          "  In band: what the sensor does wrong within the filter's band; 0 for an ideal sensor\n"
+          "  with S = G, the filter's gain.\n");
+  if (results.settings.criterion == Criterion::kIntegralSquareError) {
+    out.text(
+        "  The paper's figure also holds the filter's delay and what the filter keeps out: "
+        "compare\n"
+        "  it with that of an ideal sensor.\n");
+  } else if (results.settings.criterion == Criterion::kEnergyDifference) {
+    out.text(
+        "  The energy difference is no error: what the sensor puts out, less what the filter "
+        "does.\n");
+  }
 }
 
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept {
   if (!results.band.exists()) {
     return;
   }
-  out.heading(ReportSection::kInBand, "IN-BAND ERROR (energy of the filter on sensor minus G x)");
+  out.heading(ReportSection::kInBand,
+              "IN-BAND ERROR (at the estimates; energy of the filter on sensor minus G x)");
   write_figure(results, results.band, out);
   if (results.matched.exists()) {
     const FigureResults& matched = results.matched;
@@ -256,13 +297,26 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   write_interval("Shortest interval", known.shortest, probability, out);
   write_guard(known.guard, out);
   write_rough_trials(known.rough_trials, known.rough_part, out);
+  if (results.settings.criterion == Criterion::kInBandError &&
+      results.settings.gain_mode != GainMode::kFixed) {
+    out.part(ReportPart::kText);
+    out.text(results.settings.gain_mode == GainMode::kAuto
+                 ? "  Here and in the trials below G stays at the estimate of S, so an error of S "
+                   "counts as\n  an error in band. The uncertainties above are for a G that "
+                   "follows S.\n"
+                 : "  Here and in the trials below S is drawn, too; above it stays at its "
+                   "estimate.\n");
+  }
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
-    out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();
+    out.label("Drawn again").integer(known.redraws);
+    out.text(" times, as S, f0 and beta were those of no device").line();
   }
   if (known.redraws > known.trials / kOnePercent) {
     out.part(ReportPart::kWarning)
-        .text("  WARNING: that is more than 1 %; E is not normal. Give smaller uncertainties.\n");
+        .text(
+            "  WARNING: more than 1 % were drawn again, so S, f0 and beta are not normal. Give\n"
+            "  smaller uncertainties.\n");
   }
 }
 
@@ -270,8 +324,13 @@ void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noe
   if (trials == 0) {
     return;
   }
-  out.label("Polynomials").integer(trials).text(" trials may be off by up to ");
+  out.label("By polynomials").integer(trials).text(" trials, off by up to ");
   out.general(kPercent * static_cast<double>(part), 2).text(" % of u(E)").line();
+  if (part > kMostRough) {
+    out.part(ReportPart::kWarning)
+        .text("  WARNING: so u(E) and the intervals may be off in their second digit. ")
+        .text("Give a shorter T\n  or smaller uncertainties.\n");
+  }
 }
 
 }  // namespace emax::app

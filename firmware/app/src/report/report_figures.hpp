@@ -10,6 +10,13 @@
 
 namespace emax::app {
 
+/// As many decimals, at most 12, as give `value` this many significant digits.
+int decimals_of(double value, int digits) noexcept;
+
+/// A number that is no less in so many decimals, and one that is no more.
+double rounded_up(double value, int decimals) noexcept;
+double rounded_down(double value, int decimals) noexcept;
+
 /// The figures that tell sensors apart, in percent of S a.
 void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept;
 
@@ -21,11 +28,14 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
 
 /// What full searches made of some of the trials.
 void write_guard(const GuardResults& guard, ReportWriter& out) noexcept;
-/// How many trials are polynomials that are off by more than 1e-6 u(E), and by how much at most;
-/// nothing if there are none.
+/// How many trials are polynomials that are off by more than 1e-6 u(E), and by how much at most,
+/// with a warning above kMostRough; nothing if there are none.
 ///
 /// @param[in] part Of u(E).
 void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noexcept;
+
+/// What no signal exceeds at the estimates, in V^2 s.
+void write_upper_bound(bool exists, double bound_v2s, ReportWriter& out) noexcept;
 
 /// "+a from the start, n switches, at (ms)" and the times.
 ///

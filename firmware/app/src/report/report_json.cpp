@@ -239,11 +239,21 @@ const char* name_of(Criterion criterion) noexcept {
   return "band";
 }
 
+const char* name_of(DelayChoice choice) noexcept {
+  if (choice == DelayChoice::kNone) {
+    return "none";
+  }
+  return choice == DelayChoice::kGiven ? "given" : "auto";
+}
+
 void write_energy(const EvaluationResults& results, JsonWriter& json) noexcept {
   const Settings& settings = results.settings;
   const MaximumEnergy& maximum = results.maximum;
   json.open("energy");
   json.words("criterion", name_of(settings.criterion));
+  const bool is_in_band = settings.criterion == Criterion::kInBandError;
+  json.words("delay_mode", name_of(is_in_band ? settings.delay_choice : DelayChoice::kNone));
+  json.number("delay_s", results.model.delay_s());
   json.words("method", settings.method == Method::kBest ? "best" : "paper");
   json.number("T", settings.duration_s);
   json.number("a", results.limit_mps2);
@@ -324,12 +334,16 @@ void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
   const FigureResults& matched = results.matched;
   if (!results.band.exists()) {
     json.null("band");
+    json.words("band_refused", results.band.refusal());
     return;
   }
   json.open("band");
   write_figure(results, results.band, json);
   if (matched.exists()) {
     json.open("matched");
+    json.words("delay_mode",
+               name_of(results.settings.delay_choice == DelayChoice::kGiven ? DelayChoice::kGiven
+                                                                            : DelayChoice::kAuto));
     json.number("delay_s", matched.delay_s);
     json.number("epsilon_percent", matched.epsilon_percent);
     write_figure(results, matched, json);
@@ -337,9 +351,10 @@ void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
     json.null("matched_refused");
   } else {
     json.null("matched");
-    json.words("matched_refused", explain(matched.status));
+    json.words("matched_refused", matched.refusal());
   }
   json.close();
+  json.null("band_refused");
 }
 
 void write_ideal(const EvaluationResults& results, JsonWriter& json) noexcept {
@@ -635,6 +650,7 @@ void write_energies(const InstrumentState& state, JsonWriter& json) noexcept {
     write_ideal(state.evaluation, json);
   } else {
     json.null("band");
+    json.null("band_refused");
     json.null("ideal");
   }
 }
@@ -659,8 +675,8 @@ void write_trials(const InstrumentState& state, JsonWriter& json) noexcept {
 
 /// What stands where there is no energy.
 void write_nothing_evaluated(JsonWriter& json) noexcept {
-  for (const char* part : {"filter", "impulse_response", "energy", "band", "ideal", "uncertainty",
-                           "monte_carlo", "trend"}) {
+  for (const char* part : {"filter", "impulse_response", "energy", "band", "band_refused", "ideal",
+                           "uncertainty", "monte_carlo", "trend"}) {
     json.null(part);
   }
 }

@@ -35,6 +35,18 @@ bool are_redrawn(std::uint32_t redraws, std::uint32_t trials) noexcept {
   return redraws > trials / kOnePercent;
 }
 
+bool are_rough(const EvaluationResults& results) noexcept {
+  const float of_trials = results.has_monte_carlo && results.trials.branches.rough_trials > 0
+                              ? results.trials.branches.rough_part
+                              : 0.0F;
+  bool any = of_trials > kMostRough;
+  for (const EnergyUncertainty* known :
+       {&results.uncertainty, &results.band.uncertainty, &results.matched.uncertainty}) {
+    any = any || (known->exists() && known->rough_trials > 0 && known->rough_part > kMostRough);
+  }
+  return any;
+}
+
 bool has_flags(const ReportContext& context) noexcept {
   if (context.measurement == nullptr) {
     return false;
@@ -86,6 +98,8 @@ bool holds(Warning warning, const EvaluationResults& results,
       return known.exists() && are_redrawn(known.redraws, known.trials);
     case Warning::kNoUncertainty:
       return known.is_done && !known.exists();
+    case Warning::kRough:
+      return are_rough(results);
     case Warning::kMeasurement:
       return has_flags(context);
   }
@@ -112,6 +126,7 @@ const char* about(Warning warning) noexcept {
       return "monte_carlo";
     case Warning::kRedrawn:
     case Warning::kNoUncertainty:
+    case Warning::kRough:
       return "uncertainty";
     case Warning::kMeasurement:
       break;
@@ -137,6 +152,7 @@ ReportSection place_of(Warning warning) noexcept {
       return ReportSection::kMonteCarlo;
     case Warning::kRedrawn:
     case Warning::kNoUncertainty:
+    case Warning::kRough:
       return ReportSection::kUncertainty;
     case Warning::kMeasurement:
       break;
@@ -186,6 +202,9 @@ const char* words_of(Warning warning) noexcept {
       return "more than 1 % of the draws were no device and were made again: E is not normal there";
     case Warning::kNoUncertainty:
       return "the uncertainties leave what a device may be, so E has none; give smaller ones";
+    case Warning::kRough:
+      return "trials by polynomials are off by more than 1 % of u(E), so it may be off in its "
+             "second digit; give a shorter T or smaller uncertainties";
     case Warning::kMeasurement:
       break;
   }

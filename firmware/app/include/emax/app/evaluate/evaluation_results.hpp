@@ -107,6 +107,8 @@ struct FigureResults {
   double times_kept_s[kTimes] = {};
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
+  /// @returns Why there is none. Never null.
+  const char* refusal() const noexcept;
   Span<const double> times_s() const noexcept {
     return Span<const double>(times_kept_s, switches < kTimes ? switches : kTimes);
   }

@@ -13,6 +13,7 @@ enum class Stage : std::uint8_t {
   kFitDraws,    ///< Covariance of the fit by Monte Carlo draws.
   kEnergy,      ///< The largest energy at the estimate.
   kBound,       ///< What no signal can exceed.
+  kTrend,       ///< Before the trials: only its searches say whether its times are too long.
   kPrediction,  ///< Which signals may be the worst over the ranges, and how their energies change.
   kAdaptive,    ///< Number of trials by JCGM 101 7.9.
   kMonteCarlo,
@@ -21,7 +22,6 @@ enum class Stage : std::uint8_t {
   kBand,         ///< The in-band error, its bound and uncertainty.
   kMatched,      ///< The same with the sensor's constant delay taken out.
   kUncertainty,  ///< The uncertainty of the largest energy by JCGM 101.
-  kTrend,
   kDone,
   kFailed,
 };
@@ -69,6 +69,7 @@ struct Failure {
   const char* reason =
       nullptr;              ///< One sentence: what is wrong and what to do. Null if all is well.
   double duration_s = 0.0;  ///< The T of the search that failed; 0 if it was no search.
+  double longest_s = 0.0;   ///< The T that the cells suffice for; 0 if they were not the reason.
 };
 
 }  // namespace emax::app

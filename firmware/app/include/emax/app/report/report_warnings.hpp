@@ -23,6 +23,7 @@ enum class Warning : std::uint8_t {
   kTrialsRedrawn,  ///< More than 1 % of the draws of the trials were no device.
   kRedrawn,        ///< The same of the draws of the uncertainty of E.
   kNoUncertainty,  ///< The draws for the uncertainty of E have failed.
+  kRough,          ///< Trials by polynomials are off by more than kMostRough.
   kMeasurement,    ///< Points are flagged.
 };
 
@@ -30,7 +31,7 @@ inline constexpr Warning kWarnings[] = {
     Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
     Warning::kLowFrequency,  Warning::kShortTime,   Warning::kFewTrials,     Warning::kNotStable,
     Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn, Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kMeasurement,
+    Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
@@ -54,6 +55,9 @@ std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept;
 
 /// Of u by formula and u by draws: more is a warning.
 inline constexpr double kDisagreement = 0.2;
+
+/// Part of u(E) that its trials may be off by: more is a warning.
+inline constexpr float kMostRough = 0.01F;
 
 /// T shorter than this part of the settling time is much shorter.
 inline constexpr double kMuchShorter = 0.5;
