@@ -359,9 +359,9 @@ TEST(Evaluation, StagesInOrderInShortSteps) {
     run_on(evaluation).step();
   }
   const std::vector<Stage> expected = {
-      Stage::kModel,    Stage::kFitDraws,    Stage::kEnergy, Stage::kBound, Stage::kPrediction,
-      Stage::kAdaptive, Stage::kMonteCarlo,  Stage::kGuard,  Stage::kIdeal, Stage::kBand,
-      Stage::kMatched,  Stage::kUncertainty, Stage::kTrend};
+      Stage::kModel,      Stage::kFitDraws, Stage::kEnergy,     Stage::kBound, Stage::kTrend,
+      Stage::kPrediction, Stage::kAdaptive, Stage::kMonteCarlo, Stage::kGuard, Stage::kIdeal,
+      Stage::kBand,       Stage::kMatched,  Stage::kUncertainty};
   ASSERT_EQ(stages, expected);
   EXPECT_EQ(evaluation.stage, Stage::kDone);
   EXPECT_EQ(run_on(evaluation).progress(), 1.0);
@@ -436,14 +436,39 @@ TEST(Evaluation, RefusesTimesThatTakeTooManyCells) {
   // 12 cells per period of 4073 Hz: the 65 536 cells of a PC last for 1.3409 s.
   Settings settings = quick_settings();
   settings.duration_s = 1.341;
-  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "(T = 1.341 s)");
+  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy,
+                 "(T = 1.341 s, at most 1.34 s)");
   EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, 1.341);
+  // What it says is short enough.
+  settings.duration_s = 1.34;
+  EXPECT_EQ(run_on(emax::test::shared_evaluation()).start_from_model(kTable2, settings),
+            Status::kOk);
   settings = quick_settings();
   settings.trend_count = 3;
   settings.trend_s[2] = 2.0;
-  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend, "(T = 2 s)");
+  expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend,
+                 "(T = 2 s, at most 1.34 s)");
   settings = paper_settings(0.1312);
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "longer step");
+}
+
+TEST(Evaluation, ATrendOfTooManySwitchesFailsBeforeTheTrials) {
+  // Hardly damped, 10 kHz: more than a switch for each 50 us, and no more cells than there may be.
+  Settings settings = paper_settings(0.001);
+  settings.step_s = 1e-5;
+  settings.trend_count = 3;
+  settings.trend_s[0] = 0.001;
+  settings.trend_s[1] = 0.002;
+  settings.trend_s[2] = 6e-5 * static_cast<double>(emax::kMaxSwitches);
+  EvaluationResults& results = emax::test::shared_evaluation();
+  ASSERT_EQ(run_on(results).start_from_model({{1.0, 10000.0, 0.01}, {0.001, 1.0, 1e-5}}, settings),
+            Status::kOk);
+  while (!results.done()) {
+    ASSERT_NE(results.stage, Stage::kMonteCarlo);
+    run_on(results).step();
+  }
+  EXPECT_EQ(results.status(), Status::kTooManySwitches);
+  EXPECT_EQ(results.failure.stage, Stage::kTrend);
 }
 
 TEST(Evaluation, RefusesFits) {

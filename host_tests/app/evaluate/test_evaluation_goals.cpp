@@ -178,8 +178,9 @@ TEST(Goals, StopKeepsWhatIsComplete) {
   const auto evaluation = std::make_unique<EvaluationResults>();
   run_on(*evaluation).stop();
   EXPECT_EQ(evaluation->stage, Stage::kIdle);
-  for (const Stage stage : {Stage::kModel, Stage::kFitDraws, Stage::kEnergy, Stage::kBound,
-                            Stage::kPrediction, Stage::kMonteCarlo, Stage::kGuard, Stage::kTrend}) {
+  for (const Stage stage :
+       {Stage::kModel, Stage::kFitDraws, Stage::kEnergy, Stage::kBound, Stage::kTrend,
+        Stage::kPrediction, Stage::kMonteCarlo, Stage::kGuard, Stage::kUncertainty}) {
     ASSERT_EQ(run_on(*evaluation).start_from_points(synthetic_points(1.0), settings), Status::kOk);
     while (evaluation->stage != stage) {
       run_on(*evaluation).step();
@@ -192,8 +193,8 @@ TEST(Goals, StopKeepsWhatIsComplete) {
     EXPECT_EQ(evaluation->has_energy, stage > Stage::kEnergy);
     EXPECT_EQ(evaluation->has_bound, stage > Stage::kBound);
     EXPECT_EQ(evaluation->has_monte_carlo, stage > Stage::kGuard);
-    EXPECT_FALSE(evaluation->has_trend);
-    EXPECT_TRUE(evaluation->trend_points().empty());
+    EXPECT_EQ(evaluation->has_trend, stage > Stage::kTrend);
+    EXPECT_EQ(evaluation->trend_points().empty(), stage <= Stage::kTrend);
     pursue(*evaluation, settings, Goal::kReport);
     EXPECT_EQ(words_of(*evaluation), expected) << static_cast<int>(stage);
   }

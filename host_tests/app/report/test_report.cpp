@@ -6,6 +6,7 @@
 #include <string>
 
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 
 #include "support/evaluations.hpp"
 #include "support/report_text.hpp"
@@ -200,6 +201,136 @@ TEST(Report, ShortTimeIsNoted) {
   EXPECT_TRUE(says(report_of(evaluated(kTable2, settings)), "T is shorter"));
 }
 
+TEST(Report, TheTimeAdvisedIsEnough) {
+  Settings settings = quick_settings();
+  settings.duration_s = 0.0005;  // The settling time is 1.453582 ms.
+  EXPECT_TRUE(
+      says(report_of(evaluated({kTable2.estimate, {}}, settings)), "give a T of 1.46 ms or more"));
+  settings.duration_s = 0.00146;
+  EXPECT_FALSE(says(report_of(evaluated({kTable2.estimate, {}}, settings)), "settling time, so"));
+}
+
+/// Found, U and bound of a row of the figures.
+struct Columns {
+  double found = -1.0;
+  double expanded = -1.0;
+  double bound = -1.0;
+};
+
+Columns columns_of(const std::string& report, const std::string& name) {
+  Columns columns;
+  const std::string line = line_with(report, name);
+  EXPECT_EQ(std::sscanf(line.c_str() + name.size(), "%lf %lf %lf", &columns.found,
+                        &columns.expanded, &columns.bound),
+            3)
+      << line;
+  EXPECT_FALSE(says(line, " -0")) << line;
+  return columns;
+}
+
+TEST(Report, FiguresOfAnySizeKeepTheirColumns) {
+  (void)evaluated(kTable2, quick_settings());
+  EvaluationResults& results = emax::test::shared_evaluation();
+  const double unit = results.percent_of(1.0);
+  const std::string name = "In band, constant delay taken out";
+  for (const double percent : {50.0, 1.0, 1e-4, 1e-8, 1e-10, 1e-12, 1e-15, 0.0}) {
+    results.matched.energy_v2s = (percent / unit) * (percent / unit);
+    results.matched.bound_v2s = 1.0404 * results.matched.energy_v2s;
+    results.matched.uncertainty.u_percent = 0.005 * percent + 1e-30;
+    const Columns columns = columns_of(report_of(results), name);
+    EXPECT_NEAR(columns.found, percent, 1e-3 * percent) << percent;
+    EXPECT_NEAR(columns.expanded, 0.01 * percent, 0.06 * 0.01 * percent + 3e-30) << percent;
+    EXPECT_GE(columns.bound, 1.02 * percent * (1.0 - 1e-12)) << percent;
+    EXPECT_LE(columns.bound, 1.023 * percent) << percent;
+  }
+}
+
+TEST(Report, InBandNamesItsDelayAndWhatItsUncertaintyIsOf) {
+  Settings settings = quick_settings();
+  settings.criterion = Criterion::kInBandError;
+  std::string report = report_of(evaluated(kTable2, settings));
+  expect_well_formed(report);
+  // 0.3182/(pi 4073 Hz) = 24.868 us.
+  EXPECT_TRUE(says(report, "the reference delayed by 24.868 us, the sensor's delay\n"));
+  EXPECT_TRUE(says(report, "k of the in-band error"));
+  EXPECT_FALSE(says(report, "sensor minus filter"));
+  EXPECT_FALSE(says(report, "the paper prints"));
+  EXPECT_FALSE(says(report, "The paper's figure"));
+  EXPECT_FALSE(says(report, "ideal sensor, K = S"));  // It has none.
+  // The two u(E) are of different things.
+  EXPECT_TRUE(says(report, "stays at the estimate of S, so an error of S counts"));
+  settings.delay_choice = emax::app::DelayChoice::kNone;
+  EXPECT_TRUE(says(report_of(evaluated({kTable2.estimate, {}}, settings)),
+                   "the reference without a delay\n"));
+  settings.delay_choice = emax::app::DelayChoice::kGiven;
+  settings.delay_s = 20e-6;
+  settings.gain_mode = GainMode::kTrack;
+  report = report_of(evaluated(kTable2, settings));
+  EXPECT_TRUE(says(report, "the reference delayed by 20 us, as given\n"));
+  EXPECT_TRUE(says(report, "S is drawn, too"));
+}
+
+TEST(Report, AnIdealSensorHasAnErrorInBandOfAnotherGain) {
+  Settings settings = quick_settings();
+  settings.criterion = Criterion::kInBandError;
+  settings.gain_mode = GainMode::kFixed;
+  settings.gain = 1.0;
+  const EvaluationResults& results = evaluated({kTable2.estimate, {}}, settings);
+  // 0.037 of what the filter passes. A constant signal at rest gives 100 (1.037 - 1)/1.037 %, and
+  // what reverses once is below twice that.
+  ASSERT_TRUE(results.ideal.exists());
+  const double settled = 100.0 * 0.037 / 1.037;
+  EXPECT_GT(results.percent_of(results.ideal.energy_v2s), 0.5 * settled);
+  EXPECT_LT(results.percent_of(results.ideal.energy_v2s), 2.0 * settled);
+  const std::string report = report_of(results);
+  EXPECT_TRUE(says(report, "0 for an ideal sensor\n  with S = G"));
+  EXPECT_TRUE(says(report, "The same of an ideal sensor, K = S"));
+}
+
+TEST(Report, ASensorThatIsTheFilterHasNoError) {
+  Settings settings = quick_settings();
+  settings.filter_order = 2;
+  for (const Criterion criterion :
+       {Criterion::kIntegralSquareError, Criterion::kEnergyDifference}) {
+    settings.criterion = criterion;
+    const std::string report =
+        report_of(evaluated({{0.1, 1000.0, 0.7071067811865476}, {}}, settings));
+    expect_well_formed(report);
+    EXPECT_TRUE(says(report, "The sensor is the filter, so the error is 0 for every signal."));
+    EXPECT_FALSE(says(report, "best signal found"));
+    EXPECT_FALSE(says(report, "beyond 0 ms"));
+    EXPECT_FALSE(says(report, "-0.0"));
+  }
+}
+
+TEST(Report, TrialsThatAreTooRoughAreAWarning) {
+  using emax::app::holds;
+  using emax::app::Warning;
+  Settings settings = quick_settings();
+  settings.probability = 0.5;
+  settings.trials = 20000;
+  (void)evaluated(kTable2, settings);
+  EvaluationResults& results = emax::test::shared_evaluation();
+  EXPECT_FALSE(holds(Warning::kRough, results, {}));
+  emax::app::EnergyUncertainty* const all[] = {&results.uncertainty, &results.band.uncertainty,
+                                               &results.matched.uncertainty};
+  for (emax::app::EnergyUncertainty* known : all) {
+    known->rough_trials = 7;
+    known->rough_part = 0.004F;
+    EXPECT_FALSE(holds(Warning::kRough, results, {}));
+    EXPECT_TRUE(says(report_of(results), "7 trials, off by up to 0.4 % of u(E)\n"));
+    EXPECT_FALSE(says(report_of(results), "WARNING"));
+    known->rough_part = 0.2F;
+    EXPECT_TRUE(holds(Warning::kRough, results, {}));
+    EXPECT_TRUE(says(report_of(results), "WARNING: so u(E) and the intervals may be off"));
+    known->rough_trials = 0;
+  }
+  results.trials.branches.rough_trials = 7;
+  results.trials.branches.rough_part = 0.2F;
+  EXPECT_TRUE(holds(Warning::kRough, results, {}));
+  EXPECT_TRUE(says(report_of(results), "WARNING: so u(E) and the intervals may be off"));
+}
+
 TEST(Report, ALineThatDescribesNothingIsNoted) {
   Settings settings = quick_settings();
   settings.trend_count = 3;
@@ -236,6 +367,9 @@ TEST(Report, OtherSettings) {
   expect_well_formed(report);
   EXPECT_TRUE(says(line_with(report, "Criterion"), "energy difference"));
   EXPECT_TRUE(says(report, "\n  sqrt(E/T)  "));  // No error, so no rms error.
+  EXPECT_TRUE(says(report, "The energy difference, sqrt(E/T)"));
+  EXPECT_FALSE(says(report, "The paper's figure"));
+  EXPECT_TRUE(says(report, "one between the limits may have more"));
   EXPECT_TRUE(says(line_with(report, "Filter gain"), "in each trial that trial's S"));
   EXPECT_TRUE(says(line_with(report, "Limit a"), "9.81 m/s^2, as given"));
   EXPECT_TRUE(says(report, "1982, seed 123456789,345678901,567890123\n"));

@@ -176,7 +176,7 @@ void write_upper_bound(bool exists, double bound_v2s, ReportWriter& out) noexcep
   out.label("Upper bound");
   if (exists) {
     out.scientific(bound_v2s, 8);
-    out.text(" V^2 s: proven at the estimates, no signal within +-a has more").line();
+    out.text(" V^2 s: proven at the estimates for any signal within +-a").line();
   } else {
     out.text("none passed its check for this device and time").line();
   }
