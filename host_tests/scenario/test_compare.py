@@ -48,13 +48,14 @@ def result(energy=5e-3, u=1e-5, bound=None, device=None, serial=None, *, matched
     unit = 0.002 * (S * a) ** 2
     in_band = figure(band, u_band, unit) | {"matched": None, "matched_refused": refused}
     if refused is None:
-        in_band["matched"] = figure(matched, u_band, unit) | {"delay_s": 2.5e-5, "epsilon_percent": 1e-13}
+        in_band["matched"] = figure(matched, u_band, unit) | {
+            "delay_mode": "auto", "delay_s": 2.5e-5, "epsilon_percent": 1e-13}
     return {
         "version": "0.1.0",
         "labels": {"device": device, "serial": serial},
         "model": {"S": S},
         "filter": {"order": 10, "cutoff": 1000, "gain": S, "gain_mode": "auto"},
-        "energy": {"criterion": "ise", "method": "best", "T": 0.002, "a": a, "E": energy, "bound": bound},
+        "energy": {"criterion": "ise", "delay_mode": "none", "delay_s": 0, "method": "best", "T": 0.002, "a": a, "E": energy, "bound": bound},
         "band": in_band,
         "ideal": {"E": 5.08e-3, "rms_percent": 148.2106},
         "uncertainty": None
@@ -276,7 +277,7 @@ class CompareInBand(Comparing, ProgramTest):
             self.assertEqual(found["pairs"][0]["not_compared"], "chi-square of the fit of bump warns")
             self.assertEqual([d["fit_warns"] for d in found["devices"]], [False, True, False])
             text = self.succeed("compare", "0.json", "1.json", "2.json", "--by", by)
-            self.assertIn("good and bump: not compared: chi-square of the fit of bump warns", text)
+            self.assertIn("good and bump: CANNOT BE TOLD APART: chi-square of the fit of bump warns", text)
             self.assertNotIn("told apart:", text)
             self.assertRegex(text, r"\n  1-3   bump    fit +\S")
             self.assertNotIn("SIMULATION", text)
@@ -292,7 +293,7 @@ class CompareInBand(Comparing, ProgramTest):
         self.assertEqual([d["simulated"] for d in found["devices"]], [False, True])
         self.assertFalse(found["pairs"][0]["proven"])
         text = self.succeed("compare", "0.json", "1.json")
-        self.assertIn("not compared: chi-square of the fit of toy warns; the bench of toy was", text)
+        self.assertIn("TOLD APART: chi-square of the fit of toy warns; the bench of toy", " ".join(text.split()))
         self.assertRegex(text, r"(?m)^COMPARISON OF .*\n  SIMULATION: not every result was measured on a real bench$")
         self.assertRegex(text, r"\n  1-2   toy     fit sim +\S")
         self.compare(files[1], files[1] | {"labels": {}}, by="matched")
@@ -471,10 +472,10 @@ class ComparePictures(Comparing, ProgramTest):
         drawn = self.draw(result(matched=1.0, device=long, serial="SN 12"), result(matched=2.0, device="\u00fc" * 300))
         at = next(i for i, line in enumerate(drawn) if line.startswith("1  "))
         self.assertEqual(" ".join(drawn[at:at + 3]), "1  " + long + " SN 12")
-        # A name without blanks: as much as three lines hold, and that there was more.
-        lines = [line for line in drawn if "\u00fc" in line]
-        self.assertEqual(len(lines), 3)
-        self.assertEqual([line.strip("2 ").strip("\u00fc") for line in lines], ["", "", "\u2026"])
+        # A name without blanks: 200 characters of it, and that there was more.
+        lines = [line.strip("2 ") for line in drawn if "\u00fc" in line]
+        self.assertEqual([line.strip("\u00fc") for line in lines], [""] * (len(lines) - 1) + ["\u2026"])
+        self.assertAlmostEqual(sum(map(len, lines)), 200, delta=3)
 
     def test_lines_begin_with_a_quote(self):
         """gnuplot 5.4 reads a doubled quote at the start of a string as its end."""
@@ -499,13 +500,13 @@ class ComparePictures(Comparing, ProgramTest):
 
     def test_marks(self):
         drawn = self.draw(result(matched=1.0, fit_warns=True), result(matched=1.1), result(matched=1.2, simulated=True))
-        for words in ["fit warns: not compared", "simulated: not compared", "the same, not compared"]:
+        for words in ["fit warns: not told apart", "simulated: not told apart", "the same, told apart from no other"]:
             self.assertIn(words, drawn)
         self.assertTrue(drawn[0].startswith("SIMULATION: ") or any(d.startswith("SIMULATION: ") for d in drawn))
         drawn = self.draw(result(matched=1.0), result(matched=1.1))
         self.assertFalse(any("compared" in line or "SIMULATION" in line for line in drawn), drawn)
         drawn = self.draw(result(matched=1.0, fit_warns=True), result(matched=1.1, fit_warns=True))
-        self.assertIn("the same, not compared", drawn)
+        self.assertIn("the same, told apart from no other", drawn)
 
     def test_conditions(self):
         both = [result(-5e-3), result(6e-3)]
@@ -521,6 +522,17 @@ class ComparePictures(Comparing, ProgramTest):
         drawn = self.draw(*(result(matched=1.0 + i, u_band=1e-3) for i in range(50)))
         self.assertIn("40  39.json", drawn)
         self.assertNotIn("41  40.json", drawn)
+
+    def test_names_are_whole(self):
+        """In the picture, on the page, in the text: up to 240 characters, in lines."""
+        name, serial = "Piezoelectric shear accelerometer of the second laboratory, mounted on the large", "4711/2024-05-01/B"
+        drawn = self.draw(result(matched=1.0, device=name, serial=serial), result(matched=1.001, device=name, serial="4712"))
+        self.assertEqual(drawn.count("\u2026"), 0)
+        page = html.unescape((self.directory / "out/comparison.html").read_text(encoding="utf-8"))
+        text = " ".join((self.directory / "out/comparison.txt").read_text(encoding="utf-8").split())
+        for where in [page, text]:
+            self.assertIn(f"{name} {serial} and {name} 4712", where)
+        self.assertNotIn("...", text)
 
     def test_no_gnuplot(self):
         self.compare(result(), result(6e-3))
@@ -566,8 +578,8 @@ class ComparePage(Comparing, ProgramTest):
         self.assertIn("<title>Comparison of 3 accelerometers (simulation) - emax</title>", page)
         self.assertIn("<body class=\"marked\">\n<div class=\"banner\" role=\"note\">SIMULATION: not every result was measured",
                       page)
-        self.assertIn("<p class=\"warning\">Not compared, because chi-square of the fit warns: C.", page)
-        self.assertIn("<strong>not compared</strong>: the bench of B was simulated.", page)
+        self.assertIn("<p class=\"warning\">Told apart from no other, because chi-square of the fit warns: C.", page)
+        self.assertIn("<strong>CANNOT BE TOLD APART</strong>: the bench of B was simulated.", page)
         self.assertNotIn("told apart:", page)
 
     def test_nasty_labels_and_nothing_from_outside(self):
@@ -649,13 +661,84 @@ class CompareRefusals(Comparing, ProgramTest):
 
     def test_criterion_in_words(self):
         for criterion, words in [("ise", "integral-square error"), ("difference", "energy difference"),
-                                 ("band", "in-band error"), ("\n\u00fc", "?\u00fc")]:
+                                 ("band", "in-band error with the sensor's constant delay taken out"), ("\n\u00fc", "?\u00fc")]:
             both = [result(), result(6e-3)]
             for name, each in zip("ab", both):
-                each["energy"]["criterion"] = criterion
+                each["energy"] |= {"criterion": criterion, "delay_mode": "auto"}
                 self.save(name, each)
             printed = self.run_program("compare", "a", "b").stdout.decode()
             self.assertRegex(printed, rf"\n  Criterion +{re.escape(words)}, the best signal found\n")
+
+    def test_delays_that_differ(self):
+        """One and the same device is not told apart from itself by what the user allows it."""
+        given = [result(matched=1.2), result(matched=1.1), result(matched=1.1)]
+        for each, time in zip(given[1:], [2e-5, 3e-5]):
+            each["band"]["matched"] |= {"delay_mode": "given", "delay_s": time}
+        for name, each in zip("abc", given):
+            self.save(name, each)
+        self.refuse(["compare", "a", "b"], "emax: b: the delay taken out is 2e-05 s, and auto in a", "--reference-delay")
+        self.refuse(["compare", "b", "c"], "emax: c: the delay taken out is 3e-05 s, and 2e-05 s in b")
+        # It does not rank by the others, but the column is there.
+        for by in ["band", "energy"]:
+            text = " ".join(self.succeed("compare", "a", "b", "--by", by).split())
+            self.assertIn('WARNING: The figures under "matched %" cannot be compared: different delays were taken out, ', text)
+            self.assertIn("a delay of 20 us for b", text)
+        self.save("c", given[1])
+        text = self.succeed("compare", "b", "c")
+        self.assertNotIn("WARNING", text)
+        self.assertIn("in-band error with a delay of 20 us taken out, worst rms in % of S a", text)
+        self.assertNotIn("the sensor's constant delay", text)
+        devices = json.loads(self.succeed("compare", "b", "c", "--json"))["devices"]
+        self.assertEqual([(d["delay_mode"], d["delay_s"]) for d in devices], [("given", 2e-5)] * 2)
+        row = next(csv.DictReader(io.StringIO(self.succeed("compare", "b", "c", "--csv"))))
+        self.assertEqual((row["delay_mode"], float(row["delay_s"])), ("given", 2e-5))
+
+    def test_delays_of_an_energy_in_band(self):
+        both = [result(6e-6, 1e-8), result(3e-7, 1e-9)]
+        for each, mode in zip(both, ["none", "auto"]):
+            each["energy"] |= {"criterion": "band", "delay_mode": mode, "delay_s": 0 if mode == "none" else 2.5e-5}
+        for name, each in zip("ab", both):
+            self.save(name, each)
+        self.refuse(["compare", "a", "b", *ENERGY], "emax: b: the delay taken out is auto, and none in a")
+        self.assertNotIn("WARNING", self.succeed("compare", "a", "b"))
+        self.save("b", both[0] | {"energy": both[0]["energy"] | {"E": 7e-6}})
+        text = self.succeed("compare", "a", "b", *ENERGY)
+        self.assertRegex(text, r"\n  Criterion +in-band error with the sensor's delay, the best")
+        self.assertNotIn("paper's %", text)  # It would be one of the two figures in band.
+        self.assertNotIn("paper's criterion", text)
+
+    def test_words_of_the_energy_difference(self):
+        both = [result(5e-3), result(6e-3)]
+        for name, each in zip("ab", both):
+            each["energy"]["criterion"] = "difference"
+            self.save(name, each)
+        text = self.succeed("compare", "a", "b", *ENERGY)
+        self.assertIn("sqrt(E/T) %: root of the largest energy difference over T", text)
+        for words in ["paper's", "rms error, sqrt"]:
+            self.assertNotIn(words, text)
+
+    def test_ideal_sensor_of_another_gain(self):
+        both = [result(), result(6e-3, matched=2.0)]
+        for name, each in zip("ab", both):
+            each["filter"] |= {"gain_mode": "fixed", "gain": 2.1}
+            self.save(name, each)
+        text = " ".join(self.succeed("compare", "a", "b").split())
+        self.assertIn("An ideal sensor has 0 if its S is the filter's gain.", text)
+        self.assertIn("At the estimates no signal has more than the bound.", text)
+
+    def test_what_is_below_zero_is_refused(self):
+        self.save("a", result())
+        for place, name in [(("band",), "rms_percent"), (("band",), "u_percent"), (("band", "matched"), "rms_percent"),
+                            (("band", "matched"), "bound_percent"), (("band", "matched"), "delay_s"), (("energy",), "E"),
+                            (("uncertainty",), "u"), (("model",), "S"), (("energy",), "T")]:
+            with self.subTest(place=place, name=name):
+                other = result()
+                inner = other
+                for part in place:
+                    inner = inner[part]
+                inner[name] = -1.0
+                self.save("b", other)
+                self.refuse(["compare", "a", "b"], f"emax: b: {'.'.join(place)}.{name} is below 0; expected")
 
     def test_results_without_figures_of_the_band(self):
         self.save("a.json", result())
@@ -664,6 +747,9 @@ class CompareRefusals(Comparing, ProgramTest):
             self.refuse(["compare", "a.json", "b.json", "--by", by],
                         "emax: b.json: holds no in-band figures", "run emax report anew, or give --by energy")
         self.assertIn("b.json", self.succeed("compare", "a.json", "b.json", *ENERGY))
+        self.save("b.json", result() | {"band": None, "band_refused": "The filter has a gain of 0."})
+        self.refuse(["compare", "a.json", "b.json"], "emax: b.json: holds no in-band figures, as its report says why: The "
+                    "filter has a gain of 0. Leave it out, or give --by energy")
 
     def test_probability_behind_a_device_without_any(self):
         other = result(7e-3)

@@ -65,6 +65,19 @@ Problem check(const NumberCondition& number, const Result& result, const Result&
                                        in_digits(first_value) + number.unit, number.option);
 }
 
+std::string words_of(const Delay& delay) {
+  return delay.mode == "given" ? in_digits(delay.time_s) + " s" : delay.mode;
+}
+
+Problem check_delay(const Result& result, const Result& first, FigureKind by) {
+  const bool is_energy = by == FigureKind::kEnergy;
+  const Delay& delay = is_energy ? result.energy_delay : result.delay;
+  const Delay& first_delay = is_energy ? first.energy_delay : first.delay;
+  return delay.is_like(first_delay) ? Problem{}
+                                    : differ(result, first, "the delay taken out", words_of(delay),
+                                             words_of(first_delay), "--reference-delay");
+}
+
 Problem check_conditions(const Result& result, const Result& first, FigureKind by) {
   for (const WordCondition& word : kWords) {
     if (result.*word.member != first.*word.member) {
@@ -81,6 +94,12 @@ Problem check_conditions(const Result& result, const Result& first, FigureKind b
       return problem;
     }
   }
+  if (by == FigureKind::kBand) {
+    return {};
+  }
+  if (Problem problem = check_delay(result, first, by)) {
+    return problem;
+  }
   return by == FigureKind::kEnergy ? check(kLimit, result, first) : Problem{};
 }
 
@@ -95,6 +114,10 @@ Problem check_probability(const Result& result, const std::vector<Result>& all, 
 Problem check_band(const Result& result) {
   if (result.figure(FigureKind::kBand).exists) {
     return {};
+  }
+  if (!result.band_refused.empty()) {
+    return bad_input(result.file + ": holds no in-band figures, as its report says why: " +
+                     printable(result.band_refused) + " Leave it out, or give --by energy");
   }
   return bad_input(result.file + ": holds no in-band figures, as emax report wrote it before it " +
                    "knew them; run emax report anew, or give --by energy");

@@ -58,8 +58,8 @@ double probability_of(const Comparison& comparison) noexcept;
 Pair compare(const Result& first, const Result& second, FigureKind by) noexcept;
 
 /// Compares devices that were measured under the same conditions: filter order, cut-off and gain,
-/// T, criterion, method, and the probability of the intervals; for kEnergy also a. The figures of
-/// the band are in percent of S a, which may differ.
+/// T, criterion, method, the probability of the intervals, and the delay taken out of the figure
+/// that ranks; for kEnergy also a. The figures of the band are in percent of S a, which may differ.
 ///
 /// @param[in]  results    Two or more. Equal figures stay in their order.
 /// @param[in]  asked      What to rank by.

@@ -88,7 +88,9 @@ void write_device(const Comparison& comparison, std::size_t index, TextWriter& o
   write_number(energy_v2s >= 0.0, result.rms_percent(), out);
   write_number(true, energy_v2s, out);
   write_number(energy_v2s >= 0.0, result.rms_v(), out);
-  write_number(matched.exists, result.delay_s, out);
+  out.text(",");
+  write_field(matched.exists ? result.delay.mode : "", out);
+  write_number(matched.exists, result.delay.time_s, out);
   write_number(true, result.sensitivity, out);
   write_number(true, result.limit_mps2, out);
   out.text(",").text(mark_of(result).c_str()).text(",");
@@ -100,7 +102,7 @@ void write_device(const Comparison& comparison, std::size_t index, TextWriter& o
 
 void write_comparison_csv(const Comparison& comparison, TextWriter& out) {
   out.text("rank_best,rank_worst,device,serial,ranked_by,value,u,U,low,high,bound,");
-  out.text("matched_percent,band_percent,rms_percent,E,rms,delay_s,S,a,mark,file\n");
+  out.text("matched_percent,band_percent,rms_percent,E,rms,delay_mode,delay_s,S,a,mark,file\n");
   for (std::size_t i = 0; i < comparison.results.size(); ++i) {
     write_device(comparison, i, out);
   }

@@ -19,7 +19,7 @@ namespace emax::desk {
 /// * matched_percent,band_percent,rms_percent  the three figures in percent of S a; the last is the
 ///                     root of E/T
 /// * E,rms             V^2 s and V
-/// * delay_s           what has been taken out of matched_percent
+/// * delay_mode,delay_s  what has been taken out of matched_percent: auto or given, and how much
 /// * S,a               V/(m/s^2) and m/s^2
 /// * mark              fit, beta, sim, several with blanks, or none
 /// * file

@@ -39,7 +39,12 @@ void write_figures(const Result& result, JsonWriter& json) {
   const Figure& matched = result.figure(FigureKind::kMatched);
   const Figure& band = result.figure(FigureKind::kBand);
   write_optional("matched_percent", matched.exists, matched.value, json);
-  write_optional("delay_s", matched.exists, result.delay_s, json);
+  if (matched.exists) {
+    json.words("delay_mode", result.delay.mode.c_str());
+  } else {
+    json.null("delay_mode");
+  }
+  write_optional("delay_s", matched.exists, result.delay.time_s, json);
   write_optional("epsilon_percent", matched.exists, matched.epsilon, json);
   write_optional("band_percent", band.exists, band.value, json);
   // Null for an energy difference below 0.

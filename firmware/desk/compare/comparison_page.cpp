@@ -113,10 +113,9 @@ void append_table(std::string& html, const Comparison& comparison) {
     html += html_of(table.headings[column]) + "</th>";
   }
   html += "</tr>\n</thead>\n<tbody>\n";
-  constexpr std::size_t kNameShown = 120;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     std::vector<std::string> row = table.rows[i];
-    row[table.names] = short_name_of(comparison.results[i], kNameShown);
+    row[table.names] = short_name_of(comparison.results[i]);
     html += "<tr>";
     for (std::size_t column = 0; column < row.size(); ++column) {
       append_cell(html, row[column], column == table.names);
@@ -146,14 +145,13 @@ void append_ranking(std::string& html, const Comparison& comparison, const std::
 }
 
 void append_neighbours(std::string& html, const Comparison& comparison) {
-  constexpr std::size_t kNameShown = 60;
   begin_section(html, "neighbours", "Neighbours");
   html += "<table class=\"rows pairs\">\n";
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const Fact verdict = verdict_of(comparison, i);
     const Pair& pair = comparison.pairs[i];
-    const std::string names = short_name_of(comparison.results[i], kNameShown) + " and " +
-                              short_name_of(comparison.results[i + 1], kNameShown);
+    const std::string names =
+        short_name_of(comparison.results[i]) + " and " + short_name_of(comparison.results[i + 1]);
     html += "<tr><th scope=\"row\">" + quoted(names.c_str()) + "</th><td>";
     html += pair.told_apart ? verdict.name : "<strong>" + verdict.name + "</strong>";
     html += ": " +

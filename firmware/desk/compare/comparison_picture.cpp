@@ -33,7 +33,7 @@ constexpr double kRowMargin = 14.0;
 constexpr double kRowHeight = 46.0;  // At least.
 constexpr double kLetter = 8.4;
 constexpr double kNameWidth = 27.0;
-constexpr std::size_t kNameLines = 3;
+constexpr std::size_t kNameLines = 2 * kNameShown / 27;  // Broad letters take 1.5.
 
 struct Range {
   double least = HUGE_VAL;
@@ -86,13 +86,13 @@ std::vector<std::string> name_of_row(const Comparison& comparison, std::size_t i
   }
   lines.front().insert(0, text_of(comparison.ranks[index]) + "  ");
   if (result.fit_warns) {
-    lines.emplace_back("fit warns: not compared");
+    lines.emplace_back("fit warns: not told apart");
   }
   if (result.has_open_damping) {
     lines.emplace_back("damping not known");
   }
   if (result.is_simulated) {
-    lines.emplace_back("simulated: not compared");
+    lines.emplace_back("simulated: not told apart");
   }
   return lines;
 }
@@ -125,10 +125,12 @@ Layout layout_of(const Comparison& comparison) {
 }
 
 std::string title_of(const Comparison& comparison) {
-  constexpr const char* kTitles[kFigureKinds] = {
+  const char* const titles[kFigureKinds] = {
       "Worst error in the filter's band, constant delay taken out",
-      "Worst error in the filter's band, with the sensor's delay", "Largest energy of the error"};
-  return kTitles[static_cast<std::size_t>(comparison.by)];
+      "Worst error in the filter's band, with the sensor's delay",
+      comparison.results.front().criterion == "difference" ? "Largest energy difference"
+                                                           : "Largest energy of the error"};
+  return titles[static_cast<std::size_t>(comparison.by)];
 }
 
 std::string name_of_axis(const Comparison& comparison, const Scale& scale) {
@@ -247,11 +249,11 @@ void write_plot(const Comparison& comparison, const Layout& layout, TextWriter& 
   }
   if (has_marked) {
     out.text(before).text("$marked using 1:5:2:3 with xerrorbars lc '#000000' lw 1 pt 6 ps 1 ");
-    out.text("title 'the same, not compared', \\\n     ");
+    out.text("title 'the same, told apart from no other', \\\n     ");
   }
   const char* data = has_others ? "$devices" : "$marked";
   out.text(data).text(" using 4:5 with points lc '#d05000' lw 2 pt 8 ps 1.5 ");
-  out.text("title 'no signal has more (proven bound)'");
+  out.text("title 'at the estimates no signal has more (proven)'");
   if (has_others && has_marked) {
     out.text(", \\\n     $marked using 4:5 with points lc '#d05000' lw 2 pt 8 ps 1.5 notitle");
   }

@@ -22,7 +22,7 @@ constexpr std::size_t kMostColumns = 130;
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kLeastName = 12;
 constexpr std::size_t kMostName = 36;
-constexpr std::size_t kNameLines = 4;
+constexpr std::size_t kNameLines = kNameShown / kLeastName;
 constexpr double kWordsColumns = 86.0;
 constexpr std::size_t kAnyLines = 100;
 
@@ -91,12 +91,11 @@ void write_table(const Comparison& comparison, TextWriter& out) {
 }
 
 void write_neighbours(const Comparison& comparison, TextWriter& out) {
-  constexpr std::size_t kNameShown = 36;
   out.text("\nNEIGHBOURS\n");
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const Fact verdict = verdict_of(comparison, i);
-    const std::string names = short_name_of(comparison.results[i], kNameShown) + " and " +
-                              short_name_of(comparison.results[i + 1], kNameShown);
+    const std::string names =
+        short_name_of(comparison.results[i]) + " and " + short_name_of(comparison.results[i + 1]);
     write_words(names + ": " + verdict.name + ": " + verdict.words, "  ", "    ", out);
   }
 }

@@ -74,6 +74,45 @@ std::string signal_of(const Comparison& comparison) {
   });
 }
 
+// "the sensor's constant delay", or a number.
+std::string delay_taken_of(const Delay& delay) {
+  return delay.mode != "given" ? "the sensor's constant delay" : text_by([&](TextWriter& out) {
+    out.text("a delay of ").general(1e6 * delay.time_s, 10).text(" us");
+  });
+}
+
+// Of the matched figures; by their ranks they have one kind of delay.
+std::string delay_of(const Comparison& comparison) {
+  for (const Result& result : comparison.results) {
+    if (result.figure(FigureKind::kMatched).exists) {
+      return delay_taken_of(result.delay);
+    }
+  }
+  return delay_taken_of({});
+}
+
+std::string words_of_rank(const Comparison& comparison) {
+  const Result& first = comparison.results.front();
+  switch (comparison.by) {
+    case FigureKind::kMatched:
+      return "in-band error with " + delay_of(comparison) + " taken out, worst rms in % of S a";
+    case FigureKind::kBand:
+      return "in-band error with the sensor's delay, worst rms in % of S a";
+    case FigureKind::kEnergy:
+      break;
+  }
+  return first.criterion == "ise" ? "energy of the paper's criterion"
+                                  : "energy of the criterion, E";
+}
+
+// What sqrt(E/T) is called; in band it is one of the two figures.
+std::string heading_of_rms(const Result& first) {
+  if (first.criterion == "band") {
+    return "";
+  }
+  return first.criterion == "difference" ? "sqrt(E/T) %" : "paper's %";
+}
+
 // Why devices have no matched figure, in the words of their reports.
 std::string reason_of(const std::vector<const Result*>& refused) {
   const std::string& reason = refused.front()->matched_refused;
@@ -99,14 +138,35 @@ void add_note_on_refusals(const Comparison& comparison, std::vector<Note>& notes
        true});
 }
 
+// Where they do not rank the matched figures may be of different delays.
+void add_note_on_delays(const Comparison& comparison, std::vector<Note>& notes) {
+  const Result* first = nullptr;
+  for (const Result& result : comparison.results) {
+    if (!result.figure(FigureKind::kMatched).exists) {
+      continue;
+    }
+    first = first == nullptr ? &result : first;
+    if (!result.delay.is_like(first->delay)) {
+      notes.push_back({std::string("The figures under \"") +
+                           figure_words(FigureKind::kMatched).heading +
+                           "\" cannot be compared: different delays were taken out, " +
+                           delay_taken_of(first->delay) + " for " + list_of({first}) + " and " +
+                           delay_taken_of(result.delay) + " for " + list_of({&result}) + ".",
+                       true});
+      return;
+    }
+  }
+}
+
 void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) {
   const std::vector<const Result*> warned =
       those_that(comparison, [](const Result& result) { return result.fit_warns; });
   if (!warned.empty()) {
-    notes.push_back({"Not compared, because chi-square of the fit warns: " + list_of(warned) +
-                         ". The points do not follow the model within their uncertainties, so the "
-                         "figure and its U mean little.",
-                     true});
+    notes.push_back(
+        {"Told apart from no other, because chi-square of the fit warns: " + list_of(warned) +
+             ". The points do not follow the model within their uncertainties, so the "
+             "figure and its U mean little.",
+         true});
   }
   const std::vector<const Result*> open =
       those_that(comparison, [](const Result& result) { return result.has_open_damping; });
@@ -118,8 +178,8 @@ void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) 
   }
   const std::vector<const Result*> simulated = simulated_of(comparison);
   if (!simulated.empty()) {
-    notes.push_back({"Not compared, because the bench was simulated: " + list_of(simulated) +
-                         ". The figures say nothing about a real sensor.",
+    notes.push_back({"Told apart from no other, because the bench was simulated: " +
+                         list_of(simulated) + ". The figures say nothing about a real sensor.",
                      true});
   }
 }
@@ -200,9 +260,8 @@ std::string reason_not_compared(const Result& first, const Result& second) {
   const auto add = [&reason](const std::string& words) {
     reason += reason.empty() ? words : "; " + words;
   };
-  constexpr std::size_t kNameShown = 36;
   for (const Result* result : {&first, &second}) {
-    const std::string name = short_name_of(*result, kNameShown);
+    const std::string name = short_name_of(*result);
     if (result->fit_warns) {
       add("chi-square of the fit of " + name + " warns");
     }
@@ -214,15 +273,14 @@ std::string reason_not_compared(const Result& first, const Result& second) {
 }
 
 std::string open_damping_of(const Result& first, const Result& second) {
-  constexpr std::size_t kNameShown = 36;
   std::string words;
   for (const Result* result : {&first, &second}) {
     if (!result->has_open_damping) {
       continue;
     }
     const Figure& energy = result->figure(FigureKind::kEnergy);
-    words += (words.empty() ? "the points of " : "; those of ") +
-             short_name_of(*result, kNameShown) + " leave its damping open";
+    words += (words.empty() ? "the points of " : "; those of ") + short_name_of(*result) +
+             " leave its damping open";
     if (energy.has_range) {
       words += ", E from " + interval_text(energy, FigureKind::kEnergy) + " V^2 s";
     }
@@ -257,6 +315,16 @@ std::string difference_of(const Comparison& comparison, const Result& first, con
   });
 }
 
+// Of the energy of the in-band error; else nothing.
+std::string delay_of_energy(const Result& result) {
+  if (result.criterion != "band") {
+    return "";
+  }
+  return result.energy_delay.mode == "none"
+             ? " with the sensor's delay"
+             : " with " + delay_taken_of(result.energy_delay) + " taken out";
+}
+
 std::string heading_of_expanded(FigureKind by) {
   return by == FigureKind::kEnergy ? "U(E)" : "U(" + std::string(figure_words(by).option) + ")";
 }
@@ -268,7 +336,10 @@ std::vector<std::string> headings_of(const Comparison& comparison, bool has_mark
   }
   headings.emplace_back(figure_words(FigureKind::kMatched).heading);
   headings.emplace_back(figure_words(FigureKind::kBand).heading);
-  headings.emplace_back("paper's %");
+  const std::string rms = heading_of_rms(comparison.results.front());
+  if (!rms.empty()) {
+    headings.push_back(rms);
+  }
   if (comparison.by == FigureKind::kEnergy) {
     headings.emplace_back(figure_words(comparison.by).heading);
   }
@@ -292,7 +363,9 @@ std::vector<std::string> row_of(const Comparison& comparison, std::size_t index,
   for (const FigureKind kind : {FigureKind::kMatched, FigureKind::kBand}) {
     row.push_back(value_text(result.figure(kind), kind));
   }
-  row.push_back(paper_text(result));
+  if (!heading_of_rms(result).empty()) {
+    row.push_back(paper_text(result));
+  }
   if (comparison.by == FigureKind::kEnergy) {
     row.push_back(value_text(ranked, comparison.by));
   }
@@ -335,7 +408,7 @@ std::string criterion_of(const Result& result) {
   };
   for (const auto& words : kWords) {
     if (result.criterion == words.first) {
-      return words.second;
+      return words.second + delay_of_energy(result);
     }
   }
   return printable(result.criterion);
@@ -352,13 +425,12 @@ std::string banner_of(const Comparison& comparison) {
 
 std::vector<Fact> conditions_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
-  const char* what = comparison.by == FigureKind::kEnergy ? "" : ", worst rms in % of S a";
   return {
       {"Filter", filter_of(first)},
       {"Signal", signal_of(comparison)},
       {"Criterion", criterion_of(first) + (first.method == "paper" ? ", the paper's method"
                                                                    : ", the best signal found")},
-      {"Ranked by", figure_words(comparison.by).words + std::string(what)}};
+      {"Ranked by", words_of_rank(comparison)}};
 }
 
 ComparisonTable table_of(const Comparison& comparison) {
@@ -373,21 +445,30 @@ ComparisonTable table_of(const Comparison& comparison) {
 }
 
 std::vector<Fact> legend_of(const Comparison& comparison) {
-  const bool is_difference = comparison.results.front().criterion == "difference";
+  const Result& first = comparison.results.front();
   std::vector<Fact> legend = {
       {"rank", "1-2 is first or second: the uncertainties do not say which."},
-      {"matched %",
-       "the largest rms error within the filter's band, the sensor's constant delay "
-       "taken out, in percent of S a. An ideal sensor has 0."},
-      {"in band %", "the same with the sensor's delay."},
-      {"paper's %", std::string(is_difference ? "" : "rms error, ") +
-                        "sqrt(E/T) in percent of S a; mostly the delay of the filter and what it "
-                        "keeps out" +
-                        ideal_of(comparison) + "."},
+      {figure_words(FigureKind::kMatched).heading,
+       "the largest rms error within the filter's band, " + delay_of(comparison) +
+           " taken out, in percent of S a. An ideal sensor has 0" +
+           (first.gain_mode == "fixed" ? " if its S is the filter's gain." : ".")},
+      {figure_words(FigureKind::kBand).heading, "the same with the sensor's delay."}};
+  if (first.criterion == "difference") {
+    legend.push_back({heading_of_rms(first),
+                      "root of the largest energy difference over T, in "
+                      "percent of S a" +
+                          ideal_of(comparison) + "."});
+  } else if (first.criterion != "band") {
+    legend.push_back({heading_of_rms(first),
+                      "rms error, sqrt(E/T) in percent of S a; mostly the delay of the filter and "
+                      "what it keeps out" +
+                          ideal_of(comparison) + "."});
+  }
+  legend.push_back(
       {heading_of_expanded(comparison.by),
        std::string("expanded uncertainty (k = 2) of the figure that ranks, from those of S, f0 ") +
-           "and beta; so are interval and bound of that figure. No signal has more than the "
-           "bound."}};
+           "and beta; interval and bound are of that figure, too. At the estimates no signal has "
+           "more than the bound."});
   if (has_marks(comparison)) {
     legend.push_back({"mark",
                       "fit: chi-square of the fit warns; beta: its points leave the damping open, "
@@ -400,6 +481,7 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
 std::vector<Note> notes_of(const Comparison& comparison) {
   std::vector<Note> notes;
   add_note_on_refusals(comparison, notes);
+  add_note_on_delays(comparison, notes);
   add_notes_on_marks(comparison, notes);
   add_notes_on_reports(comparison, notes);
   add_notes_on_energy(comparison, notes);
@@ -411,7 +493,7 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
   const Result& second = comparison.results[index + 1];
   const Pair& pair = comparison.pairs[index];
   if (!pair.is_compared) {
-    return {"not compared", reason_not_compared(first, second)};
+    return {"CANNOT BE TOLD APART", reason_not_compared(first, second)};
   }
   if (pair.has_open_damping) {
     return {"CANNOT BE TOLD APART", open_damping_of(first, second)};

@@ -19,10 +19,9 @@ constexpr int kMostDigits = 12;
 constexpr const char* kNone = "-";
 
 constexpr FigureWords kWords[kFigureKinds] = {
-    {"matched %", "in-band error with the sensor's constant delay taken out", " % of S a",
-     "matched"},
-    {"in band %", "in-band error with the sensor's delay", " % of S a", "band"},
-    {"E in V^2 s", "energy of the paper's criterion", " V^2 s", "energy"},
+    {"matched %", " % of S a", "matched"},
+    {"in band %", " % of S a", "band"},
+    {"E in V^2 s", " V^2 s", "energy"},
 };
 
 int exponent_of(double value) {

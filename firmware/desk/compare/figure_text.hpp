@@ -10,7 +10,6 @@ namespace emax::desk {
 /// What a figure is called and how it is written.
 struct FigureWords {
   const char* heading;  ///< Of a column: "matched %".
-  const char* words;    ///< "in-band error with the sensor's constant delay taken out".
   const char* unit;     ///< Behind a number: " % of S a".
   const char* option;   ///< "matched".
 };

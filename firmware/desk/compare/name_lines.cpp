@@ -122,14 +122,13 @@ std::string short_name_of(const Result& result, std::size_t most) {
 
 std::string list_of(const std::vector<const Result*>& results) {
   constexpr std::size_t kMostNamed = 5;
-  constexpr std::size_t kNameShown = 48;
   const std::size_t count = results.size();
   // One more name is as short as "and 1 others".
   const std::size_t named = count <= kMostNamed + 1 ? count : kMostNamed;
   std::string text;
   for (std::size_t i = 0; i < named; ++i) {
     text += i == 0 ? "" : i + 1 == count ? " and " : ", ";
-    text += short_name_of(*results[i], kNameShown);
+    text += short_name_of(*results[i]);
   }
   return named == count ? text : text + " and " + std::to_string(count - named) + " others";
 }

@@ -9,6 +9,10 @@
 
 namespace emax::desk {
 
+/// How many characters of a name there are room for anywhere, in as many lines as it takes: as many
+/// as a report shows. Longer ones are cut.
+inline constexpr std::size_t kNameShown = 240;
+
 /// @returns The device's label or file with its serial number, in one printable line.
 std::string name_of(const Result& result);
 
@@ -31,9 +35,9 @@ std::vector<std::string> name_lines(const Result& result, double width, std::siz
                                     Typeface typeface = Typeface::kMonospaced);
 
 /// @returns `name_of()` in one line of at most so many characters, 12 or more.
-std::string short_name_of(const Result& result, std::size_t most);
+std::string short_name_of(const Result& result, std::size_t most = kNameShown);
 
-/// @returns "A, B and C" in such short names; beyond the fifth "and 3 others".
+/// @returns "A, B and C" by `short_name_of()`; beyond the fifth "and 3 others".
 std::string list_of(const std::vector<const Result*>& results);
 
 }  // namespace emax::desk

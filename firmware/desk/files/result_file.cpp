@@ -42,6 +42,19 @@ class Taker final {
     return value;
   }
 
+  // Of what cannot be below 0.
+  double size(const Group& group, const char* name) {
+    const double value = number(group, name);
+    refuse_negative(group, name, value);
+    return value;
+  }
+
+  double optional_size(const Group& group, const char* name, bool& exists) {
+    const double value = optional_number(group, name, exists);
+    refuse_negative(group, name, value);
+    return value;
+  }
+
   // Null, or no such member, is no number.
   double optional_number(const Group& group, const char* name, bool& exists) {
     const JsonValue& value = group.value[name];
@@ -58,6 +71,11 @@ class Taker final {
       miss(group, name, "text");
     }
     return value.text();
+  }
+
+  // Only where it matters: of reports from before it was told, nothing is known.
+  Delay delay(const Group& group, bool is_due) {
+    return is_due ? Delay{text(group, "delay_mode"), size(group, "delay_s")} : Delay{"none", 0.0};
   }
 
   void optional_interval(const Group& group, const char* name, Figure& figure) {
@@ -83,6 +101,12 @@ class Taker final {
   const std::string& missing() const noexcept { return missing_; }
 
  private:
+  void refuse_negative(const Group& group, const char* name, double value) {
+    if (value < 0.0 && missing_.empty()) {
+      missing_ = std::string(group.name) + "." + name + " is below 0";
+    }
+  }
+
   void miss(const Group& group, const char* name, const char* kind) {
     if (missing_.empty()) {
       missing_ = std::string(group.name) + "." + name + " is no " + kind;
@@ -113,20 +137,21 @@ Problem check_version(const JsonValue& root, const std::string& file) {
 void take_conditions(const JsonValue& root, Taker& taker, Result& result) {
   const Group filter = {root["filter"], "filter"};
   const Group energy = {root["energy"], "energy"};
-  result.order = taker.number(filter, "order");
-  result.cutoff_hz = taker.number(filter, "cutoff");
+  result.order = taker.size(filter, "order");
+  result.cutoff_hz = taker.size(filter, "cutoff");
   result.gain_mode = taker.text(filter, "gain_mode");
-  result.gain = taker.number(filter, "gain");
-  result.limit_mps2 = taker.number(energy, "a");
-  result.duration_s = taker.number(energy, "T");
+  result.gain = taker.size(filter, "gain");
+  result.limit_mps2 = taker.size(energy, "a");
+  result.duration_s = taker.size(energy, "T");
   result.criterion = taker.text(energy, "criterion");
+  result.energy_delay = taker.delay(energy, result.criterion == "band");
   result.method = taker.text(energy, "method");
-  result.sensitivity = taker.number({root["model"], "model"}, "S");
+  result.sensitivity = taker.size({root["model"], "model"}, "S");
 }
 
 void take_uncertainty(const Group& block, Taker& taker, Figure& energy, double& probability) {
   energy.has_uncertainty = true;
-  energy.u = taker.number(block, "u");
+  energy.u = taker.size(block, "u");
   energy.expanded = kCoverageFactor * energy.u;
   probability = taker.number(block, "probability");
   taker.interval(block, "interval", energy);
@@ -136,7 +161,7 @@ void take_uncertainty(const Group& block, Taker& taker, Figure& energy, double& 
 void take_box(const Group& trials, Taker& taker, Result& result) {
   Figure& energy = result.figure(FigureKind::kEnergy);
   energy.has_uncertainty = true;
-  energy.u = sqrt(3.0) * taker.number(trials, "u");
+  energy.u = sqrt(3.0) * taker.size(trials, "u");
   energy.expanded = kCoverageFactor * energy.u;
   result.energy_u_is_of_box = true;
 }
@@ -145,7 +170,9 @@ void take_energy(const JsonValue& root, Taker& taker, Result& result) {
   Figure& energy = result.figure(FigureKind::kEnergy);
   const Group block = {root["energy"], "energy"};
   energy.exists = true;
-  energy.value = taker.number(block, "E");
+  // Only the difference of two energies can be below 0.
+  energy.value =
+      result.criterion == "difference" ? taker.number(block, "E") : taker.size(block, "E");
   energy.bound = taker.optional_number(block, "bound", energy.has_bound);
   result.ideal_percent =
       taker.optional_number({root["ideal"], "ideal"}, "rms_percent", result.has_ideal);
@@ -177,11 +204,11 @@ void take_open_damping(const JsonValue& root, Result& result) {
 
 void take_figure(const Group& block, Taker& taker, Figure& figure) {
   figure.exists = true;
-  figure.value = taker.number(block, "rms_percent");
-  figure.bound = taker.optional_number(block, "bound_percent", figure.has_bound);
-  figure.u = taker.optional_number(block, "u_percent", figure.has_uncertainty);
+  figure.value = taker.size(block, "rms_percent");
+  figure.bound = taker.optional_size(block, "bound_percent", figure.has_bound);
+  figure.u = taker.optional_size(block, "u_percent", figure.has_uncertainty);
   if (figure.has_uncertainty) {
-    figure.expanded = taker.number(block, "U_percent");
+    figure.expanded = taker.size(block, "U_percent");
     taker.optional_interval(block, "interval_percent", figure);
   }
 }
@@ -189,6 +216,7 @@ void take_figure(const Group& block, Taker& taker, Figure& figure) {
 void take_band(const JsonValue& root, Taker& taker, Result& result) {
   const Group band = {root["band"], "band"};
   if (!band.value.is_object()) {
+    result.band_refused = root["band_refused"].text();
     return;
   }
   take_figure(band, taker, result.figure(FigureKind::kBand));
@@ -199,8 +227,8 @@ void take_band(const JsonValue& root, Taker& taker, Result& result) {
   }
   Figure& figure = result.figure(FigureKind::kMatched);
   take_figure(matched, taker, figure);
-  figure.epsilon = taker.number(matched, "epsilon_percent");
-  result.delay_s = taker.number(matched, "delay_s");
+  figure.epsilon = taker.size(matched, "epsilon_percent");
+  result.delay = taker.delay(matched, true);
 }
 
 bool has_warning(const JsonValue& warnings, std::string_view about) {

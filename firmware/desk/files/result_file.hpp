@@ -42,6 +42,17 @@ struct Figure {
   double epsilon = 0.0;
 };
 
+/// What was taken out of a figure.
+struct Delay {
+  std::string mode;  ///< "none", "auto" (the sensor's, so each device has its own) or "given".
+  double time_s = 0.0;
+
+  /// @returns Whether figures with the one and the other can be compared.
+  bool is_like(const Delay& other) const noexcept {
+    return mode == other.mode && (mode != "given" || time_s == other.time_s);
+  }
+};
+
 /// A device's figures and the conditions that they were found under, all from one file.
 struct Result {
   std::string path;
@@ -57,11 +68,13 @@ struct Result {
   double limit_mps2 = 0.0;
   double duration_s = 0.0;
   std::string criterion;  ///< Of the energy.
+  Delay energy_delay;     ///< Of its reference; "none" but for the in-band error.
   std::string method;
 
   double sensitivity = 0.0;  ///< In V/(m/s^2).
   std::array<Figure, kFigureKinds> figures = {};
-  double delay_s = 0.0;                     ///< That has been taken out of the matched figure.
+  Delay delay;                              ///< That has been taken out of the matched figure.
+  std::string band_refused;                 ///< Why there are no figures of the band, the same.
   std::string matched_refused;              ///< Why there is no matched figure; empty if not known.
   bool has_ideal = false;                   ///< The next is known.
   double ideal_percent = 0.0;               ///< Root of E/T of an ideal sensor, in percent of S a.
@@ -89,7 +102,8 @@ struct Result {
 /// such a range has a standard deviation of u/sqrt(3), and E is smooth over so narrow a range.
 /// Where the points leave the damping open there is none, and the range of E in its place.
 /// A file without the block "band" has no figures of the band; one without "warnings" has its fit
-/// judged as the report does.
+/// judged as the report does. Numbers that cannot be, such as an rms or an uncertainty below 0, are
+/// refused.
 ///
 /// @param[out] result Of no use if there is a problem.
 Problem read_result(const std::string& path, Result& result);
