@@ -212,6 +212,26 @@ class FigureValues(ProgramTest):
                 self.assertEqual(figure["U_percent"], 2 * figure["u_percent"])
                 self.assertEqual(figure["disagreements"], 0)
 
+    def test_delays_are_told(self):
+        quick = ["--model", PAPER, "--trend", "none"]
+        of_sensor = 0.3182 / (math.pi * 4073.0)
+        for options, energy, matched in [
+            ([], ("none", 0.0), ("auto", of_sensor)),
+            (["--criterion", "band"], ("auto", of_sensor), ("auto", of_sensor)),
+            (["--criterion", "band", "--reference-delay", "none"], ("none", 0.0), ("auto", of_sensor)),
+            (["--criterion", "band", "--reference-delay", "2e-5"], ("given", 2e-5), ("given", 2e-5)),
+            (["--reference-delay", "2e-5"], ("none", 0.0), ("given", 2e-5)),
+        ]:
+            with self.subTest(options):
+                found = self.json_of(*quick, *options)
+                for part, (mode, time) in [(found["energy"], energy), (found["band"]["matched"], matched)]:
+                    self.assertEqual(part["delay_mode"], mode)
+                    self.assertAlmostEqual(part["delay_s"], time, delta=1e-15)
+                self.assertIsNone(found["band_refused"])
+        found = self.json_of(*quick, "--gain", "0")
+        self.assertIsNone(found["band"])
+        self.assertIn("gain of 0", found["band_refused"])
+
     def test_normal_trials_are_made_once(self):
         found = self.json_of(*MODEL, "--trials", "5000", "--trend", "none", "--distribution", "normal")
         box = self.json_of(*MODEL, "--trials", "5000", "--trend", "none")
@@ -257,7 +277,21 @@ class FigureWords(ProgramTest):
         # DESIGN: u(E) is about 1.1e-5 over the box, and root 3 times that of normal parameters.
         self.assertRegex(text[text.index("UNCERTAINTY OF E"):text.index("MONTE CARLO OF")],
                          r"u\(E\) +1\.[89]\de?-?\d*[ e]")
+        self.assertRegex(text, r"none exceeds\n")
+        self.assertIn("THE FIGURES (at the estimates;", text)
+        for line in re.findall(r".*proven.*", text):
+            self.assertIn("at the estimates", line)
         self.assertRegex(text, r"Std deviation over box +1\.1e-05 V\^2 s|Std deviation over box +1\.1\de-05")
+
+    def test_page_of_the_in_band_error(self):
+        self.succeed("report", "--model", PAPER + ",0.003,6,0.0004", "--trials", "1000", "--trend", "none", "--criterion", "band",
+                     "--out", "out")
+        page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
+        for words in ["in-band error with the sensor's delay of 24.868", "with G at the estimate of S", "k of the in-band error",
+                      "what the filter passes of the sensor's response less that of an ideal sensor"]:
+            self.assertIn(words, page)
+        for words in ["k = ka", "less that of the reference filter", "sensor minus filter", "The paper's E"]:
+            self.assertNotIn(words, page)
 
 
 if __name__ == "__main__":

@@ -137,8 +137,8 @@ void append_ranking(std::string& html, const Comparison& comparison, const std::
     append_picture(html, svg,
                    {"Devices by rank with their errors",
                     "Each device's largest error with its expanded uncertainty. Bars that overlap "
-                    "much belong to devices that share their ranks; the triangle is above every "
-                    "signal of any shape."},
+                    "much belong to devices that share their ranks; at the estimates the "
+                    "triangle is above every signal of any shape."},
                    1);
   }
   html += "</section>\n";

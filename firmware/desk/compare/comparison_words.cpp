@@ -510,9 +510,9 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
     return {"CANNOT BE TOLD APART", difference};
   }
   return {"told apart",
-          difference + (pair.proven ? ", and no signal of any shape can turn that round at the "
-                                      "estimates: the upper bound of the first is below the "
-                                      "figure of the second"
+          difference + (pair.proven ? ", and at the estimates signals of any shape leave it so: "
+                                      "the upper bound of the first is below the figure of the "
+                                      "second"
                                     : "")};
 }
 

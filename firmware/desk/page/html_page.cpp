@@ -22,6 +22,7 @@ using app::EvaluationResults;
 using app::TextWriter;
 
 constexpr double kMilli = 1e3;
+constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
 constexpr double kCoverageFactor = 2.0;
 
@@ -187,7 +188,13 @@ void append_uncertainty(std::string& html, const EvaluationResults& results) {
                                             : "none: all uncertainties are zero");
     return;
   }
-  append_figure(html, "", "Standard uncertainty u(E)", format.number(known.u_v2s) + format.unit());
+  // The figures above are of a gain that follows S.
+  const bool holds_gain = results.settings.criterion == Criterion::kInBandError &&
+                          results.settings.gain_mode == app::GainMode::kAuto;
+  append_figure(html, "",
+                holds_gain ? "Standard uncertainty u(E), with G at the estimate of S"
+                           : "Standard uncertainty u(E)",
+                format.number(known.u_v2s) + format.unit());
   append_figure(html, "", "Expanded uncertainty U(E), k = 2",
                 format.number(kCoverageFactor * known.u_v2s) + format.unit());
   const std::string percent =
@@ -203,7 +210,10 @@ void append_papers_maximum(std::string& html, const EvaluationResults& results) 
   }
   const MonteCarloResult& result = results.trials.result;
   const EnergyFormat format(result.maximum, result.u);
-  append_figure(html, "", "The paper's E<sub>max</sub>, largest of its Monte Carlo trials",
+  const bool is_paper = results.settings.criterion == Criterion::kIntegralSquareError;
+  append_figure(html, "",
+                is_paper ? "The paper's E<sub>max</sub>, largest of its Monte Carlo trials"
+                         : "E<sub>max</sub>, largest of the Monte Carlo trials",
                 format.number(result.maximum) + format.unit());
 }
 
@@ -230,6 +240,15 @@ void append_conditions(std::string& html, const EvaluationResults& results, bool
         out.integer(static_cast<std::uint64_t>(settings.filter_order)).text(" with a cutoff of ");
         out.general(settings.cutoff_hz, 7).text(" Hz; ");
         out.text(name_in_line(settings.criterion));
+        if (settings.criterion == Criterion::kInBandError) {
+          if (settings.delay_choice == app::DelayChoice::kNone) {
+            out.text(" with the sensor's delay");
+          } else {
+            const bool is_given = settings.delay_choice == app::DelayChoice::kGiven;
+            out.text(is_given ? " with the given delay of " : " with the sensor's delay of ");
+            out.general(kMicro * results.model.delay_s(), 5).text(" us taken out");
+          }
+        }
         const bool is_paper = settings.method == Method::kPaper;
         out.text(is_paper ? ", by the paper's method: other signals may reach more." : ".");
       }) +

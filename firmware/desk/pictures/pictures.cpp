@@ -329,6 +329,10 @@ double end_of_picture_s(const EvaluationResults& results) {
   return has_start_table(results) ? std::min(end_s, kPeriodsShown / fastest_hz(results)) : end_s;
 }
 
+bool is_in_band(const EvaluationResults& results) {
+  return results.settings.criterion == Criterion::kInBandError;
+}
+
 void write_impulse_response(const Picture& picture, const EvaluationResults& results,
                             TextWriter& out) {
   const double end_s = end_of_picture_s(results);
@@ -355,6 +359,10 @@ void write_impulse_response(const Picture& picture, const EvaluationResults& res
     out.text(is_right ? ", graph 0.06 right offset -1,0\n" : ", graph 0.06 left offset 1,0\n");
   }
   out.text("plot ").text(table.c_str());
+  if (is_in_band(results)) {  // Small beside the two.
+    out.text(" skip 1 using ($1*ts):($2*ks) with lines ls 1 title 'k of the in-band error'\n");
+    return;
+  }
   out.text(" skip 1 using ($1*ts):($2*ks) with lines ls 1 title 'k = ka − kf', \\\n");
   out.text("  '' skip 1 using ($1*ts):($3*ks) with lines ls 2 title 'sensor, ka', \\\n");
   out.text("  '' skip 1 using ($1*ts):($4*ks) with lines ls 3 title 'filter, kf'\n");
@@ -503,6 +511,7 @@ struct Kind {
   app::ReportSection section;
   const char* title;
   const char* caption;
+  const char* caption_in_band;  // Null where it is the same.
   bool (*exists)(const EvaluationResults& results);
   void (*write)(const Picture& picture, const EvaluationResults& results, TextWriter& out);
 };
@@ -522,23 +531,27 @@ constexpr Kind kKinds[] = {
      "Left: the measured points and the fitted model. Right: how far the points are from the "
      "model. With a good fit most bars cross the dashed line and what remains has no shape; a "
      "bow, a step or a resonance there is what the model does not know of.",
-     has_points, write_frequency_response},
+     nullptr, has_points, write_frequency_response},
     {kPictureFiles[1], app::ReportSection::kErrorSystem, "impulse responses",
      "The error system k is the sensor's response less that of the reference filter. From where "
      "it has settled on, a longer signal adds little that is new.",
+     "The error system k: what the filter passes of the sensor's response less that of an ideal "
+     "sensor. From where it has settled on, a longer signal adds little that is new.",
      always, write_impulse_response},
     {kPictureFiles[2], app::ReportSection::kEnergy, "the worst signal found",
      "Above: the signal within ±a with the largest E that was found; it only ever switches between "
      "the limits. Below: its error, the sensor's output less that of the reference filter.",
+     "Above: the signal within ±a with the largest E that was found; it only ever switches between "
+     "the limits. Below: its error, what the filter passes of the sensor's output less G x.",
      always, write_signal},
     {kPictureFiles[3], app::ReportSection::kMonteCarlo, "energy within the uncertainties",
      "How often the Monte Carlo trials came to which energy. The dark part is within the coverage "
      "interval.",
-     has_histogram, write_histogram},
+     nullptr, has_histogram, write_histogram},
     {kPictureFiles[4], app::ReportSection::kTrend, "energy over the length of the signal",
      "The largest energy for signals of different lengths, and the straight line through them. "
-     "The triangle is above every signal of any shape of its length.",
-     has_trend, write_trend},
+     "At the estimates the triangle is above every signal of any shape of its length.",
+     nullptr, has_trend, write_trend},
 };
 
 std::string name_of_device(const app::Labels& labels) {
@@ -556,8 +569,9 @@ std::vector<Picture> pictures_of(const EvaluationResults& results,
   const std::string mark = is_simulated(context) ? "SIMULATION: " : "";
   for (const Kind& kind : kKinds) {
     if (kind.exists(results)) {
-      pictures.push_back(
-          {kind.file, kind.section, mark + name + ": " + kind.title, kind.caption, context.in_g});
+      const bool has_own = is_in_band(results) && kind.caption_in_band != nullptr;
+      pictures.push_back({kind.file, kind.section, mark + name + ": " + kind.title,
+                          has_own ? kind.caption_in_band : kind.caption, context.in_g});
     }
   }
   return pictures;

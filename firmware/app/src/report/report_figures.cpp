@@ -250,7 +250,8 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     out.label("Delay taken out").general(kMicro * matched.delay_s, 5).text(" us");
     const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
     out.text(is_given ? ", as given" : ", beta/(pi f0), the sensor's at low frequency").line();
-    out.label("It leaves open").general(matched.epsilon_percent, 2).text(" % of S a").line();
+    out.label("The true delay").text("may change the rms by ");
+    out.general(matched.epsilon_percent, 2).text(" % of S a").line();
     write_figure(results, matched, out);
   }
   if (results.band.uncertainty.exists()) {
@@ -324,7 +325,7 @@ void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noe
   if (trials == 0) {
     return;
   }
-  out.label("By polynomials").integer(trials).text(" trials, off by up to ");
+  out.label("Interpolated").integer(trials).text(" trials, off by up to ");
   out.general(kPercent * static_cast<double>(part), 2).text(" % of u(E)").line();
   if (part > kMostRough) {
     out.part(ReportPart::kWarning)

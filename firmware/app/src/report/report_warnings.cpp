@@ -203,7 +203,7 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kNoUncertainty:
       return "the uncertainties leave what a device may be, so E has none; give smaller ones";
     case Warning::kRough:
-      return "trials by polynomials are off by more than 1 % of u(E), so it may be off in its "
+      return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
              "second digit; give a shorter T or smaller uncertainties";
     case Warning::kMeasurement:
       break;
