@@ -365,7 +365,7 @@ class Options(ProgramTest):
         model = ["--model", "1.037,4073,0.3182,0.003,6,0.2", *QUICK]
         # 5.61 % of the draws of beta are below 0.0001 or not below 1: 59 in 1000, with a deviation of 8.
         self.assertAlmostEqual(self.json_of(*model)["uncertainty"]["redrawn"], 59, delta=4 * 8)
-        self.assertRegex(self.succeed("report", *model), r"WARNING: more than 1 % were drawn again, so S, f0 and")
+        self.assertRegex(self.succeed("report", *model), r"WARNING: that is more than 1 %, so S, f0 and beta are not normal")
 
     def test_paper_method(self):
         # The plain fixed point from Phi's first column, step 2 us: at rest after 6 iterations.

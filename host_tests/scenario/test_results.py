@@ -230,7 +230,7 @@ class FigureValues(ProgramTest):
                 self.assertIsNone(found["band_refused"])
         found = self.json_of(*quick, "--gain", "0")
         self.assertIsNone(found["band"])
-        self.assertIn("gain of 0", found["band_refused"])
+        self.assertIn("gain above 0", found["band_refused"])
 
     def test_normal_trials_are_made_once(self):
         found = self.json_of(*MODEL, "--trials", "5000", "--trend", "none", "--distribution", "normal")

@@ -49,8 +49,6 @@ constexpr char kNoDevice[] =
     "There is no accepted device to go on with; start with points or parameters.";
 constexpr char kOtherSettings[] =
     "A setting of the energy itself has changed; start again for a new energy.";
-constexpr char kNoGain[] =
-    "The in-band error needs a reference filter with a gain above 0; give another gain.";
 constexpr char kTrialsFailed[] =
     "The energies of the trials cannot be summed up; check the units of the parameters.";
 
@@ -88,22 +86,18 @@ Failure check_box(const EvaluationResults& results, const Settings& settings, Go
 Failure check_grids(const EvaluationResults& results, const Settings& settings,
                     Goal goal) noexcept {
   const bool is_paper = settings.method == Method::kPaper;
-  const double cell_s = is_paper ? settings.step_s : grid_cell_s(results.model);
   const std::size_t times = 1 + (wants_trend(goal) ? settings.trend_count : 0);
   for (std::size_t i = 0; i < times; ++i) {
     const bool is_energy = i == 0;
     const double duration_s = is_energy ? settings.duration_s : settings.trend_s[i - 1];
     const std::size_t cells = search_cells(results.model, search_settings(settings, duration_s));
     if (cells > kMaxCells && (is_energy || !adapts_trend(settings))) {
-      Failure failure = failure_of_search(Status::kTooManyCells, settings.method,
-                                          is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
-      failure.longest_s = static_cast<double>(kMaxCells) * cell_s;
-      return failure;
+      return failure_of_search(Status::kTooManyCells, settings.method,
+                               is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
     }
     if (is_energy && is_paper && wants_trials(goal) && results.has_uncertainty() &&
         cells > GridWorkspace::kMaxTrialCells) {
-      return {Status::kTooManyCells, Stage::kMonteCarlo, kTooManyCellsTrials, duration_s,
-              static_cast<double>(GridWorkspace::kMaxTrialCells) * cell_s};
+      return {Status::kTooManyCells, Stage::kMonteCarlo, kTooManyCellsTrials, duration_s};
     }
   }
   return {};

@@ -10,6 +10,9 @@
 
 namespace emax::app {
 
+inline constexpr const char* kNoGain =
+    "The in-band error needs a reference filter with a gain above 0; give another gain.";
+
 // Each `check_...()` answers kOk if nothing stands in the way.
 
 /// @returns kInvalidArgument for a setting out of its range.

@@ -3,6 +3,8 @@
 
 #include "emax/base/elementary.hpp"
 
+#include "evaluation_checks.hpp"
+
 namespace emax::app {
 namespace {
 
@@ -85,9 +87,7 @@ void EvaluationResults::clear() noexcept {
 
 const char* FigureResults::refusal() const noexcept {
   // Device and settings are valid, but for a gain of 0.
-  return status == Status::kInvalidArgument
-             ? "The filter has a gain of 0, so there is no error in its band; give another gain."
-             : explain(status);
+  return status == Status::kInvalidArgument ? kNoGain : explain(status);
 }
 
 void FigureResults::clear() noexcept {

@@ -111,16 +111,12 @@ void write_filter(const EvaluationResults& results, ReportWriter& out) noexcept 
 }
 
 void write_delay(const EvaluationResults& results, ReportWriter& out) noexcept {
-  const double delay_s = results.model.delay_s();
   out.line();
-  out.indent();
-  if (results.settings.delay_choice == DelayChoice::kNone) {
-    out.text("the reference without a delay");
-    return;
+  out.indent().text("the reference delayed by ").general(kMicro * results.model.delay_s(), 5);
+  out.text(" us");
+  if (results.settings.delay_choice == DelayChoice::kGiven) {
+    out.text(", as given");
   }
-  const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
-  out.text("the reference delayed by ").general(kMicro * delay_s, 5).text(" us, ");
-  out.text(is_given ? "as given" : "the sensor's delay");
 }
 
 void write_method(const EvaluationResults& results, ReportWriter& out) noexcept {
@@ -366,6 +362,11 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
 
 // Error system
 
+void write_no_error(ReportWriter& out) noexcept {
+  out.part(ReportPart::kText)
+      .text("  The sensor is the filter, so the error is 0 for every signal.\n");
+}
+
 void write_error_system(const EvaluationResults& results, ReportWriter& out) noexcept {
   const double duration_s = results.settings.duration_s;
   const Peak& peak = results.peak;
@@ -375,7 +376,7 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
                   ? "ERROR SYSTEM (impulse response k of the in-band error)"
                   : "ERROR SYSTEM (impulse response k = sensor minus filter)");
   if (results.model.is_nothing()) {
-    out.part(ReportPart::kText).text("  k is 0: the sensor is the filter.\n");
+    write_no_error(out);
     return;
   }
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
@@ -465,8 +466,7 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
     out.text("none, the energy difference is negative").line();
   }
   if (results.model.is_nothing()) {
-    out.part(ReportPart::kText)
-        .text("  The sensor is the filter, so the error is 0 for every signal.\n");
+    write_no_error(out);
     return;
   }
   const SwitchingSignal& signal = results.maximum.signal;
@@ -648,6 +648,15 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   }
 }
 
+/// What the cells suffice for.
+double longest_time_s(const EvaluationResults& results) noexcept {
+  const Settings& settings = results.settings;
+  const bool is_of_trials = results.failure.stage == Stage::kMonteCarlo;
+  const std::size_t cells = is_of_trials ? GridWorkspace::kMaxTrialCells : kMaxCells;
+  const bool is_paper = settings.method == Method::kPaper;
+  return static_cast<double>(cells) * (is_paper ? settings.step_s : grid_cell_s(results.model));
+}
+
 }  // namespace
 
 void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept {
@@ -723,10 +732,11 @@ void write_failure(const EvaluationResults& results, TextWriter& out) noexcept {
   out.text(failure.reason);
   if (failure.duration_s > 0.0) {
     out.text(" (T = ").general(failure.duration_s, 10).text(" s");
-    if (failure.longest_s > 0.0) {
+    if (failure.status == Status::kTooManyCells) {
       constexpr int kDigits = 4;
-      const int decimals = decimals_of(failure.longest_s, kDigits);
-      out.text(", at most ").general(rounded_down(failure.longest_s, decimals), 10).text(" s");
+      const double longest_s = longest_time_s(results);
+      const int decimals = decimals_of(longest_s, kDigits);
+      out.text(", at most ").general(rounded_down(longest_s, decimals), 10).text(" s");
     }
     out.text(")");
   }

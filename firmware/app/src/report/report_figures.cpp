@@ -232,8 +232,7 @@ void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept
         "  it with that of an ideal sensor.\n");
   } else if (results.settings.criterion == Criterion::kEnergyDifference) {
     out.text(
-        "  The energy difference is no error: what the sensor puts out, less what the filter "
-        "does.\n");
+        "  The energy difference is no error, but the sensor's energy less that of the filter.\n");
   }
 }
 
@@ -299,25 +298,20 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   write_guard(known.guard, out);
   write_rough_trials(known.rough_trials, known.rough_part, out);
   if (results.settings.criterion == Criterion::kInBandError &&
-      results.settings.gain_mode != GainMode::kFixed) {
-    out.part(ReportPart::kText);
-    out.text(results.settings.gain_mode == GainMode::kAuto
-                 ? "  Here and in the trials below G stays at the estimate of S, so an error of S "
-                   "counts as\n  an error in band. The uncertainties above are for a G that "
-                   "follows S.\n"
-                 : "  Here and in the trials below S is drawn, too; above it stays at its "
-                   "estimate.\n");
+      results.settings.gain_mode == GainMode::kAuto) {
+    out.part(ReportPart::kText)
+        .text("  Here and below G stays at the estimate of S, so an error of S is one in band; ")
+        .text("above, G follows S.\n");
   }
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
-    out.label("Drawn again").integer(known.redraws);
-    out.text(" times, as S, f0 and beta were those of no device").line();
+    out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();
   }
   if (known.redraws > known.trials / kOnePercent) {
     out.part(ReportPart::kWarning)
         .text(
-            "  WARNING: more than 1 % were drawn again, so S, f0 and beta are not normal. Give\n"
-            "  smaller uncertainties.\n");
+            "  WARNING: that is more than 1 %, so S, f0 and beta are not normal. Give smaller "
+            "uncertainties.\n");
   }
 }
 
@@ -329,8 +323,7 @@ void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noe
   out.general(kPercent * static_cast<double>(part), 2).text(" % of u(E)").line();
   if (part > kMostRough) {
     out.part(ReportPart::kWarning)
-        .text("  WARNING: so u(E) and the intervals may be off in their second digit. ")
-        .text("Give a shorter T\n  or smaller uncertainties.\n");
+        .text("  WARNING: u(E) may be off in its second digit. Give a shorter T.\n");
   }
 }
 

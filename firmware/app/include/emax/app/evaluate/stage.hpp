@@ -69,7 +69,6 @@ struct Failure {
   const char* reason =
       nullptr;              ///< One sentence: what is wrong and what to do. Null if all is well.
   double duration_s = 0.0;  ///< The T of the search that failed; 0 if it was no search.
-  double longest_s = 0.0;   ///< The T that the cells suffice for; 0 if they were not the reason.
 };
 
 }  // namespace emax::app
