@@ -293,6 +293,13 @@ class FigureWords(ProgramTest):
         for words in ["k = ka", "less that of the reference filter", "sensor minus filter", "The paper's E"]:
             self.assertNotIn(words, page)
 
+    def test_page_of_the_energy_difference(self):
+        self.succeed("report", "--model", PAPER, "--trend", "none", "--criterion", "difference", "--out", "out")
+        page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
+        for words in ["The energy difference, as √(E/T)", "The energy difference is no error", "one between the limits may have"]:
+            self.assertIn(words, page)
+        self.assertNotIn("The paper's figure", page)
+
 
 if __name__ == "__main__":
     main()

@@ -168,7 +168,10 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
   if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
     value += "; an ideal sensor: " + percentage(results.percent_of(results.ideal.energy_v2s), 0.0);
   }
-  append_figure(html, "", "The paper's figure, √(E/T)", value);
+  const bool is_error = results.settings.criterion == Criterion::kIntegralSquareError;
+  append_figure(html, "",
+                is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",
+                value);
 }
 
 void append_uncertainty(std::string& html, const EvaluationResults& results) {
