@@ -28,8 +28,15 @@ Problem describe(const std::string& name, const desk::ImportError& error) {
 Problem take_common(const std::string& name, double reference_percent,
                     desk::ImportedPoints& imported) {
   FrequencyResponse& points = imported.points;
+  if (imported.states_common && reference_percent > 0.0) {
+    return bad_input(name +
+                     ": the column u_common says what all points have in common, and so does "
+                     "--reference-uncertainty; expected one of them");
+  }
+  const SharedEffects shared = points.shared();
   const app::CommonRemoval removal = app::remove_common(points, reference_percent);
   if (removal.status == Status::kOk) {
+    (void)points.set_shared(shared);
     return {};
   }
   const ResponsePoint& point = points.points()[removal.bad_point];

@@ -34,12 +34,11 @@ class ConversionSetter final {
       conversion.column = i;
       conversion.name = table_.columns[i].name;
       conversion.sign = table_.columns[i].is_lag ? -1.0 : 1.0;
-      conversion.coverage = table_.columns[i].is_standard ? 1.0 : kImportCoverage;
     }
-    if (ImportError error = set_units()) {
-      return error;
-    }
-    return check_uncertainties();
+    ImportError error = set_units();
+    error = error ? error : set_coverage();
+    error = error ? error : check_uncertainties();
+    return error ? error : check_phase_options();
   }
 
  private:
@@ -55,6 +54,9 @@ class ConversionSetter final {
     }
     if (!error && by_.u_amplitude().is_there) {
       error = set_uncertainty_unit(by_.u_amplitude(), by_.amplitude());
+    }
+    if (!error && by_.u_common().is_there) {
+      error = set_uncertainty_unit(by_.u_common(), by_.amplitude());
     }
     if (!error && by_.u_phase().is_there) {
       error =
@@ -114,7 +116,7 @@ class ConversionSetter final {
   // An uncertainty is in its own unit, in percent or dB, or in the unit of what it belongs to.
   ImportError set_uncertainty_unit(Conversion& u, const Conversion& of) const {
     const std::string& spelling = table_.columns[u.column].unit_spelling;
-    const bool is_amplitude = &u == &by_.of(Role::kAmplitudeUncertainty);
+    const bool is_amplitude = &u != &by_.of(Role::kPhaseUncertainty);
     if (spelling.empty()) {
       u.unit = of.unit.is_given() ? of.unit : kDegree;
       u.is_decibel = of.is_decibel;
@@ -144,13 +146,67 @@ class ConversionSetter final {
       return error_at(table_.header_line + 1, "there is no uncertainty of the phase",
                       kExpectedUncertainty);
     }
-    const bool all_there =
-        by_.u_amplitude().is_there && (by_.u_phase().is_there || !by_.phase().is_there);
-    if (all_there && (is_amplitude_given || is_phase_given)) {
-      return error_at(table_.header_line + 1, "the table has uncertainties of its own",
-                      "expected --uncertainty only for a table without them");
+    if (by_.u_amplitude().is_there && is_amplitude_given) {
+      return error_at(table_.header_line + 1,
+                      "the table has uncertainties of its own for the amplitude",
+                      "expected --uncertainty only for what has none");
+    }
+    if (by_.u_phase().is_there && is_phase_given) {
+      return error_at(table_.header_line + 1,
+                      "the table has uncertainties of its own for the phase",
+                      "expected --uncertainty only for what has none");
     }
     return {};
+  }
+
+  // Without a phase there is nothing to turn, and nothing in degrees.
+  ImportError check_phase_options() const {
+    const char* const option = by_.phase().is_there                     ? nullptr
+                               : options_.phase_uncertainty.value > 0.0 ? "--uncertainty"
+                               : options_.phase_unit.is_given()         ? "--input-units"
+                                                                        : nullptr;
+    return option == nullptr
+               ? ImportError{}
+               : error_at(table_.header_line + 1,
+                          std::string("the table has no phase, and ") + option + " speaks of one",
+                          "expected a column with it, or the option without it");
+  }
+
+  // The name of a column says it, or a line about all of them, or it is 2.
+  ImportError set_coverage() {
+    const Statements& statements = table_.statements;
+    const Conversion* unusual = nullptr;
+    const Conversion* silent = nullptr;
+    for (Conversion* const u : {&by_.u_amplitude(), &by_.u_phase(), &by_.u_common()}) {
+      if (!u->is_there) {
+        continue;
+      }
+      const Column& column = table_.columns[u->column];
+      if (column.is_contradictory) {
+        return error_at(table_.header_line + 1, quoted(u->name) + " states two coverage factors",
+                        "expected one, such as \"U (k=2)\"");
+      }
+      if (column.coverage > 0.0 && statements.coverage > 0.0 &&
+          column.coverage != statements.coverage) {
+        return error_at(table_.header_line + 1,
+                        quoted(u->name) + " says " + text_of_coverage(column.coverage) +
+                            ", and line " + std::to_string(statements.coverage_line) + " says " +
+                            text_of_coverage(statements.coverage),
+                        "expected one coverage factor");
+      }
+      u->coverage = column.coverage > 0.0       ? column.coverage
+                    : statements.coverage > 0.0 ? statements.coverage
+                                                : kImportCoverage;
+      unusual = column.coverage > 0.0 && column.coverage != kImportCoverage ? u : unusual;
+      silent = column.coverage == 0.0 && statements.coverage == 0.0 ? u : silent;
+    }
+    if (unusual == nullptr || silent == nullptr) {
+      return {};
+    }
+    return error_at(table_.header_line + 1,
+                    quoted(unusual->name) + " says " + text_of_coverage(unusual->coverage) +
+                        ", and " + quoted(silent->name) + " says nothing of its coverage factor",
+                    "expected it of each uncertainty, such as \"U (k=2)\"");
   }
 
   const FoundTable& table_;

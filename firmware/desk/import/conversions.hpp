@@ -39,21 +39,24 @@ class Conversions final {
   const Conversion& phase() const noexcept { return of(Role::kPhase); }
   const Conversion& u_amplitude() const noexcept { return of(Role::kAmplitudeUncertainty); }
   const Conversion& u_phase() const noexcept { return of(Role::kPhaseUncertainty); }
+  const Conversion& u_common() const noexcept { return of(Role::kCommonUncertainty); }
   Conversion& frequency() noexcept { return of(Role::kFrequency); }
   Conversion& amplitude() noexcept { return of(Role::kAmplitude); }
   Conversion& phase() noexcept { return of(Role::kPhase); }
   Conversion& u_amplitude() noexcept { return of(Role::kAmplitudeUncertainty); }
   Conversion& u_phase() noexcept { return of(Role::kPhaseUncertainty); }
+  Conversion& u_common() noexcept { return of(Role::kCommonUncertainty); }
 
  private:
-  static constexpr std::size_t kRoles = static_cast<std::size_t>(Role::kPhaseUncertainty) + 1;
+  static constexpr std::size_t kRoles = static_cast<std::size_t>(Role::kCommonUncertainty) + 1;
 
   std::array<Conversion, kRoles> all_;
 };
 
-/// Sets them from the header and the options. Refused are units that are not known or that the
-/// options contradict, two columns of one quantity, and a table whose uncertainties nobody states
-/// or two state.
+/// Sets them from the header, the lines around the table and the options. Refused are units that
+/// are not known or that the options contradict, two columns of one quantity, coverage factors that
+/// contradict each other or are stated of one uncertainty only, a table whose uncertainties nobody
+/// states or two state, and options about columns that the table does not have.
 ///
 /// @param[out] conversions Of no use after an error.
 ImportError set_conversions(const FoundTable& table, const ImportOptions& options,

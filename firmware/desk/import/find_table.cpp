@@ -40,7 +40,10 @@ class TableFinder final {
     if (table_.first_row == table_.text.lines.size() && before_.empty()) {
       return error_at(0, "the table holds no points", kExpectedPoints);
     }
-    return table_.columns.empty() ? take_native(columns) : ImportError{};
+    if (ImportError error = table_.columns.empty() ? take_native(columns) : ImportError{}) {
+      return error;
+    }
+    return take_statements();
   }
 
  private:
@@ -55,48 +58,141 @@ class TableFinder final {
   bool is_spoilt_row(const std::vector<std::string>& cells, std::size_t columns) const {
     const CellKind kind = read_cell(cells[0], table_.layout.has_decimal_comma).kind;
     const bool has_count = cells.size() == columns || columns == 0;
-    return (kind == CellKind::kNumber && has_count) || kind == CellKind::kNotFinite;
+    const bool is_number = kind == CellKind::kNumber || kind == CellKind::kAmbiguous;
+    return (is_number && has_count) || kind == CellKind::kNotFinite;
+  }
+
+  std::vector<std::string> names_in(std::size_t line) const {
+    std::vector<std::string> names = table_.cells(line);
+    drop_empty_end(names, 1);
+    return names;
+  }
+
+  // A line with words of which none is a number may go on with the header above it.
+  bool may_be_names(const std::vector<std::string>& cells) const {
+    return std::all_of(cells.begin(), cells.end(), [this](const std::string& cell) {
+      const CellKind kind = read_cell(cell, table_.layout.has_decimal_comma).kind;
+      return kind == CellKind::kText || kind == CellKind::kBlank;
+    });
+  }
+
+  void take_names(const Header& header, std::size_t line) {
+    table_.columns = header.columns;
+    table_.header_line = line;
+    table_.header_lines.push_back(line);
   }
 
   ImportError take_header(std::size_t columns) {
-    for (const std::size_t line : before_) {
-      std::vector<std::string> names = table_.cells(line);
-      drop_empty_end(names, 1);
+    for (std::size_t i = 0; i < before_.size(); ++i) {
+      const std::vector<std::string> names = names_in(before_[i]);
       const Header header = read_header(names);
       if (names.size() >= 2 && header.is_complete) {
-        table_.columns = header.columns;
-        table_.header_line = line;
-        return take_unit_row(line);
+        take_names(header, before_[i]);
+        take_lines_below(names, i + 1);
+        return {};
+      }
+      if (take_pair(names, i, columns)) {
+        return {};
       }
       if (is_spoilt_row(names, columns)) {
-        table_.first_row = line;  // Reading it says what is wrong.
+        table_.first_row = before_[i];  // Reading it says what is wrong.
         return {};
       }
     }
     return before_.empty() ? take_comment_as_header(columns) : refuse_header(columns);
   }
 
-  // Between the header and the first row only the units may stand.
-  ImportError take_unit_row(std::size_t header_line) {
-    const auto below = std::find(before_.begin(), before_.end(), header_line) + 1;
-    if (below == before_.end()) {
-      return {};
+  // Two lines that are a header only together: "Magnitude" and "Phase" above "f", "value", "U".
+  bool take_pair(const std::vector<std::string>& names, std::size_t index, std::size_t columns) {
+    if (index + 1 == before_.size()) {
+      return false;
     }
-    std::vector<std::string> units = table_.cells(*below);
-    drop_empty_end(units, 1);
-    if (!is_unit_row(units)) {
-      table_.first_row = *below;
-      return {};
+    const std::vector<std::string> below = names_in(before_[index + 1]);
+    const std::vector<std::string> joined = join_names(names, below);
+    const Header header = read_header(joined);
+    if (joined.size() != columns || !header.is_complete || !may_be_names(names) ||
+        !may_be_names(below) || read_header(below).is_complete) {
+      return false;
     }
-    for (std::size_t i = 0; i < std::min(units.size(), table_.columns.size()); ++i) {
-      if (table_.columns[i].unit_spelling.empty()) {
-        table_.columns[i].unit_spelling = units[i];
+    table_.header_lines.push_back(before_[index]);
+    take_names(header, before_[index + 1]);
+    take_lines_below(joined, index + 2);
+    return true;
+  }
+
+  // Between the header and the first row only more of the header may stand.
+  void take_lines_below(std::vector<std::string> names, std::size_t index) {
+    for (; index < before_.size(); ++index) {
+      const std::vector<std::string> below = names_in(before_[index]);
+      if (!may_be_names(below) || !continues_header(below)) {
+        table_.first_row = before_[index];
+        return;
+      }
+      names = join_names(names, below);
+      table_.columns = read_header(names).columns;
+      table_.header_lines.push_back(before_[index]);
+    }
+  }
+
+  // Of the lines before the table, and of comments anywhere.
+  ImportError take_statements() {
+    StatementReader reader;
+    for (std::size_t i = 0; i < table_.text.lines.size(); ++i) {
+      const bool is_header = std::find(table_.header_lines.begin(), table_.header_lines.end(), i) !=
+                             table_.header_lines.end();
+      const bool is_around = i < table_.first_row || is_comment(table_.text.lines[i]);
+      if (is_header || !is_around) {
+        continue;
+      }
+      if (ImportError error = reader.take(i + 1, table_.text.lines[i])) {
+        return error;
       }
     }
-    if (below + 1 != before_.end()) {
-      table_.first_row = *(below + 1);
+    table_.statements = reader.finish();
+    take_units_of_cells();
+    for (Column& column : table_.columns) {
+      if (ImportError error = take_stated_unit(column)) {
+        return error;
+      }
     }
     return {};
+  }
+
+  // Units that stand behind the numbers are those of a column that names none.
+  void take_units_of_cells() {
+    if (!table_.layout.has_units || table_.first_row == table_.text.lines.size()) {
+      return;
+    }
+    const std::vector<std::string> row = table_.cells(table_.first_row);
+    for (std::size_t i = 0; i < std::min(row.size(), table_.columns.size()); ++i) {
+      if (table_.columns[i].unit_spelling.empty()) {
+        table_.columns[i].unit_spelling =
+            read_cell_with_unit(row[i], table_.layout.has_decimal_comma).unit_spelling;
+      }
+    }
+  }
+
+  ImportError take_stated_unit(Column& column) const {
+    const Statements& statements = table_.statements;
+    const StatedUnit* const stated = column.role == Role::kFrequency   ? &statements.frequency
+                                     : column.role == Role::kAmplitude ? &statements.amplitude
+                                     : column.role == Role::kPhase     ? &statements.phase
+                                                                       : nullptr;
+    if (stated == nullptr || stated->spelling.empty()) {
+      return {};
+    }
+    if (column.unit_spelling.empty()) {
+      column.unit_spelling = stated->spelling;
+      return {};
+    }
+    const std::string_view own = find_unit(column.unit_spelling).name;
+    if (own.empty() || own == find_unit(stated->spelling).name) {
+      return {};
+    }
+    return error_at(table_.header_line + 1,
+                    "\"" + column.name + "\" is in " + std::string(own) + ", and line " +
+                        std::to_string(stated->line) + " says " + stated->spelling,
+                    "expected one unit of each quantity");
   }
 
   // Programs such as numpy write the header as a comment. It is one only if every word of it is.
@@ -116,8 +212,7 @@ class TableFinder final {
           std::all_of(header.columns.begin(), header.columns.end(),
                       [](const Column& column) { return column.role != Role::kIgnored; });
       if (names.size() == columns && header.is_complete && are_all_ours) {
-        table_.columns = header.columns;
-        table_.header_line = line;
+        take_names(header, line);
       }
       return {};
     }
@@ -127,8 +222,7 @@ class TableFinder final {
   // Words stand before the numbers, but none of the lines names a frequency and an amplitude.
   ImportError refuse_header(std::size_t columns) const {
     for (const std::size_t line : before_) {
-      std::vector<std::string> names = table_.cells(line);
-      drop_empty_end(names, 1);
+      const std::vector<std::string> names = names_in(line);
       const Header header = read_header(names);
       const bool is_last = line == before_.back();
       if (names.size() < 2 || (!header.is_header && !(is_last && names.size() == columns))) {

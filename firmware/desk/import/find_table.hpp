@@ -9,6 +9,7 @@
 #include "desk/import/import_error.hpp"
 #include "desk/import/table_header.hpp"
 #include "desk/import/table_layout.hpp"
+#include "desk/import/table_statements.hpp"
 #include "desk/import/table_text.hpp"
 
 namespace emax::desk {
@@ -18,6 +19,8 @@ struct FoundTable {
   TableText text;
   TableLayout layout;
   std::vector<Column> columns;
+  Statements statements;  ///< Of the lines around it; units that the header lacks are in `columns`.
+  std::vector<std::size_t> header_lines;  ///< Where the names and units stand; empty for none.
   std::size_t header_line = 0;
   std::size_t first_row = 0;
   bool is_native = false;  ///< It has no header and is taken as the native form.
@@ -26,9 +29,9 @@ struct FoundTable {
   std::vector<std::string> cells(std::size_t line) const;
 };
 
-/// Decodes a text and finds the table in it: lines before the header are passed over; a header may
-/// have a row of units below it, or be a comment. Without one the table must have the five columns
-/// of the native form.
+/// Decodes a text and finds the table in it. Of lines before the header, and of comments, only what
+/// `StatementReader` knows is read. A header may go on in the lines below it, with units or parts
+/// of names, or be a comment. Without one the table must have the five columns of the native form.
 ///
 /// @param[out] table Of no use after an error.
 ImportError find_table(std::string_view bytes, FoundTable& table);

@@ -10,6 +10,8 @@
 #include "desk/import/find_table.hpp"
 #include "desk/import/merge_rows.hpp"
 #include "desk/import/read_rows.hpp"
+#include "desk/import/shared_effects.hpp"
+#include "desk/import/table_layout.hpp"
 #include "desk/import/understanding.hpp"
 
 namespace emax::desk {
@@ -70,6 +72,42 @@ ImportError add_points(const MergedRows& merged, const ImportOptions& options,
       kExpectedPoints);
 }
 
+ImportError set_common(const MergedRows& merged, ImportedPoints& imported) {
+  std::vector<double> common;
+  for (const Row& row : merged.rows) {
+    common.push_back(row.u_common);
+  }
+  const Status status =
+      imported.points.set_common(Span<const double>(common.data(), common.size()));
+  return status == Status::kOk
+             ? ImportError{}
+             : error_at(merged.rows.front().line,
+                        "what all points have in common is not below 100 %", "expected less");
+}
+
+ImportError set_shared(const FoundTable& table, ImportedPoints& imported) {
+  SharedEffects shared;
+  for (std::size_t i = 0; i < table.text.lines.size(); ++i) {
+    if (read_shared(table.text.lines[i], shared) == SharedLine::kWrong) {
+      return error_at(i + 1, "what all points share is not readable",
+                      "expected the line as emax has written it, or none");
+    }
+  }
+  (void)imported.points.set_shared(shared);
+  return {};
+}
+
+// A delay and a polarity are in the phases.
+ImportError check_turn(const ImportOptions& options, const ImportedPoints& imported) {
+  const char* const option = options.channel_delay_s != 0.0 ? "--channel-delay"
+                             : options.is_inverted          ? "--invert"
+                                                            : nullptr;
+  return option == nullptr || imported.points.known_phases() > 0
+             ? ImportError{}
+             : error_at(0, std::string("there are no phases that ") + option + " could change",
+                        "expected phases, or no such option");
+}
+
 }  // namespace
 
 ImportError import_points(std::string_view text, const ImportOptions& options,
@@ -89,6 +127,13 @@ ImportError import_points(std::string_view text, const ImportOptions& options,
   }
   const MergedRows merged = merge_rows(rows);
   if (ImportError error = add_points(merged, options, imported)) {
+    return error;
+  }
+  imported.states_common = conversions.u_common().is_there;
+  ImportError error = imported.states_common ? set_common(merged, imported) : ImportError{};
+  error = error ? error : set_shared(table, imported);
+  error = error ? error : check_turn(options, imported);
+  if (error) {
     return error;
   }
   imported.understanding = understanding_of(table, conversions, options, merged);

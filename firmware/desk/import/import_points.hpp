@@ -19,16 +19,20 @@ struct ImportedPoints {
   std::vector<std::size_t> lines;  ///< The line that each point came from, from 1.
   /// What was understood: "read as Hz, mV/g, deg, percent; 20 points; tabs, decimal comma".
   std::string understanding;
+  bool states_common = false;  ///< The table itself says what all its points have in common.
 };
 
 /// Reads a table in UTF-8, UTF-16 or Latin-1.
 ///
 /// Separators are tabs, semicolons, commas or blanks; a decimal comma goes with all but commas.
 /// Quotes, trailing separators, empty lines, lines that begin with '#' or '%', comments behind a
-/// '#' and U+2212 for a minus are allowed. Lines before the header are passed over. The header is
-/// read: its names say what a column is, and its units, or those of a row of units below it, what
-/// it is in; columns of other names are not used. A table without a header is the native form,
-/// f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg with expanded uncertainties (k = 2).
+/// '#', U+2212 for a minus, marks of thousands that can be nothing else, and units behind numbers
+/// are allowed. The header is read: its names say what a column is, and its units, or those of the
+/// lines below it, what it is in; columns of other names are not used. Of the lines before it and
+/// of comments a coverage factor and units are read ("k = 2", "units: Hz, mV/g"). A table without a
+/// header is the native form, f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg. Uncertainties are
+/// expanded ones with k = 2 unless the table says another k. A column u_common is what all points
+/// have in common, and is taken out of u_amplitude; a comment "# shared:" is what they share else.
 ///
 /// Points are put in order. Rows of the same frequency are one point: means of amplitude and
 /// phase, and u^2 the mean of theirs plus the variance of the mean by their scatter; what a row

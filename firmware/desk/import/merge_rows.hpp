@@ -14,6 +14,7 @@ struct Row {
   double phase_rad = 0.0;
   double u_amplitude = 0.0;
   double u_phase_rad = 0.0;
+  double u_common = 0.0;  ///< What of `u_amplitude` all points have in common, relative.
   bool has_phase = false;
 };
 
@@ -24,7 +25,7 @@ struct MergedRows {
 
 /// Sorts the rows and makes rows of the same frequency one: the means, u^2 = mean of u_i^2 + s^2/n
 /// with the rows' standard deviation s. The phase is the mean of those rows that have one, taken
-/// within half a turn of the first.
+/// within half a turn of the first; the common part that of the first row.
 MergedRows merge_rows(std::vector<Row> rows);
 
 }  // namespace emax::desk

@@ -1,6 +1,7 @@
 // The rows of a table as numbers.
 #include "desk/import/read_rows.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -17,6 +18,20 @@ namespace {
 constexpr double kLargestPhase_rad = 360.0 * kRadiansPerDegree;
 constexpr double kNepersPerDecibel = 0.11512925464970229;  // ln(10)/20.
 constexpr char kExpectedNumber[] = "expected a number such as 1.03 or 4e3";
+constexpr char kExpectedComma[] =
+    "expected a number such as 1,03 or 4e3, with a decimal comma as in the rest of the table";
+constexpr char kExpectedOneSign[] =
+    "expected one decimal sign in all of the table, and no mark of thousands";
+
+// A cell or a line as a complaint shows it.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::size_t end = std::min(text.size(), kMost);
+  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
+    --end;
+  }
+  return "\"" + std::string(text.substr(0, end)) + (end < text.size() ? "..." : "") + "\"";
+}
 
 class RowReader final {
  public:
@@ -43,10 +58,11 @@ class RowReader final {
     if (row.size() != table_.columns.size()) {
       return error_at(line + 1,
                       std::string(row.size() == 1 ? "there is " : "there are ") +
-                          count_of(row.size(), "column"),
+                          count_of(row.size(), "column") + ": " + shown(table_.text.lines[line]),
                       table_.is_native ? std::string(kExpectedNative)
                                        : "expected " + std::to_string(table_.columns.size()) +
-                                             ", as many as the header has");
+                                             ", as many as the header has; a line that is no row "
+                                             "begins with #");
     }
     Row point;
     point.line = line + 1;
@@ -60,21 +76,59 @@ class RowReader final {
     return error;
   }
 
+  CellWithUnit cell_of(const std::vector<std::string>& row, const Conversion& from) const {
+    return table_.layout.has_units
+               ? read_cell_with_unit(row[from.column], table_.layout.has_decimal_comma)
+               : CellWithUnit{read_cell(row[from.column], table_.layout.has_decimal_comma), {}};
+  }
+
+  ImportError bad_cell(const std::vector<std::string>& row, const Conversion& from,
+                       std::size_t line, const char* problem, const char* expectation) const {
+    const std::string& cell = row[from.column];
+    return error_at(line,
+                    from.name + problem + (cell.empty() ? "" : ": " + shown(cell)) + " (column " +
+                        std::to_string(from.column + 1) + ")",
+                    expectation);
+  }
+
   // @param[out] value In the unit of the column.
   ImportError read_number(const std::vector<std::string>& row, const Conversion& from,
                           std::size_t line, double& value) const {
-    const Cell cell = read_cell(row[from.column], table_.layout.has_decimal_comma);
-    switch (cell.kind) {
+    const CellWithUnit read = cell_of(row, from);
+    const bool has_comma = table_.layout.has_decimal_comma;
+    switch (read.cell.kind) {
       case CellKind::kNumber:
-        value = cell.value;
-        return {};
+        value = read.cell.value;
+        return read.unit_spelling.empty() ? ImportError{} : convert(row, from, line, read, value);
       case CellKind::kBlank:
-        return error_at(line, from.name + " is missing", kExpectedNumber);
+        return bad_cell(row, from, line, " is missing", kExpectedNumber);
       case CellKind::kText:
-        return error_at(line, from.name + " is not a number", kExpectedNumber);
+        return bad_cell(row, from, line, " is not a number",
+                        has_comma ? kExpectedComma : kExpectedNumber);
       case CellKind::kNotFinite:
-        return error_at(line, from.name + " is not a finite number", kExpectedNumber);
+        return bad_cell(row, from, line, " is not a finite number", kExpectedNumber);
+      case CellKind::kAmbiguous:
+        return bad_cell(
+            row, from, line,
+            has_comma ? " has a point among decimal commas" : " has a comma among decimal points",
+            kExpectedOneSign);
     }
+    return {};
+  }
+
+  // From the unit behind the number to that of the column.
+  ImportError convert(const std::vector<std::string>& row, const Conversion& from, std::size_t line,
+                      const CellWithUnit& read, double& value) const {
+    const Unit unit = find_unit(read.unit_spelling);
+    if (unit.name == std::string_view(from.unit.name)) {
+      return {};
+    }
+    const bool is_plain = !from.is_decibel && unit.quantity == from.unit.quantity;
+    if (!is_plain) {
+      return bad_cell(row, from, line, " is in another unit than its column",
+                      expected_units(from.unit.quantity));
+    }
+    value *= unit.scale / from.unit.scale;
     return {};
   }
 
@@ -82,14 +136,13 @@ class RowReader final {
                             std::size_t line, double& value) const {
     ImportError error = read_number(row, from, line, value);
     if (!error && !(value > 0.0)) {
-      error = error_at(line, from.name + " is zero or negative", "expected a number above 0");
+      error = bad_cell(row, from, line, " is zero or negative", "expected a number above 0");
     }
     return error;
   }
 
   bool is_blank(const std::vector<std::string>& row, const Conversion& from) const {
-    return !from.is_there ||
-           read_cell(row[from.column], table_.layout.has_decimal_comma).kind == CellKind::kBlank;
+    return !from.is_there || cell_of(row, from).cell.kind == CellKind::kBlank;
   }
 
   ImportError read_phase(const std::vector<std::string>& row, Row& point) {
@@ -104,11 +157,10 @@ class RowReader final {
     }
     const double largest = kLargestPhase_rad / by_.phase().unit.scale;
     if (abs(value) > largest * (1.0 + 1e-12)) {
-      return error_at(
-          point.line,
-          by_.phase().name + " is outside " +
-              (by_.phase().unit.name == std::string_view("deg") ? "-360 to 360" : "one turn"),
-          "expected a phase within a turn, negative for a lag");
+      const bool is_deg = by_.phase().unit.name == std::string_view("deg");
+      return bad_cell(row, by_.phase(), point.line,
+                      is_deg ? " is outside -360 to 360" : " is outside one turn",
+                      "expected a phase within a turn, negative for a lag");
     }
     point.phase_rad = by_.phase().sign * value * by_.phase().unit.scale;
     if (!by_.u_phase().is_there) {
@@ -150,12 +202,32 @@ class RowReader final {
       from.is_relative = given.unit.quantity == Quantity::kRatio;
       from.is_decibel = given.unit.quantity == Quantity::kDecibel;
     }
+    point.u_amplitude = standard_uncertainty(from, value, point.amplitude);
+    return by_.u_common().is_there ? read_common(row, point) : ImportError{};
+  }
+
+  static double standard_uncertainty(const Conversion& from, double value, double amplitude) {
     if (from.is_decibel) {
-      point.u_amplitude = value * kNepersPerDecibel / from.coverage * point.amplitude;
-      return {};
+      return value * kNepersPerDecibel / from.coverage * amplitude;
     }
-    const double unit = from.is_relative ? from.unit.scale * point.amplitude : from.unit.scale;
-    point.u_amplitude = value / from.coverage * unit;
+    const double unit = from.is_relative ? from.unit.scale * amplitude : from.unit.scale;
+    return value / from.coverage * unit;
+  }
+
+  // The rest is what the point has by itself.
+  ImportError read_common(const std::vector<std::string>& row, Row& point) {
+    const Conversion& from = by_.u_common();
+    double value = 0.0;
+    if (ImportError error = read_number(row, from, point.line, value)) {
+      return error;
+    }
+    const double common = standard_uncertainty(from, value, point.amplitude);
+    if (!(common >= 0.0) || !(common < point.u_amplitude)) {
+      return bad_cell(row, from, point.line, " is not below the uncertainty that contains it",
+                      "expected 0 or more, and less than the total");
+    }
+    point.u_amplitude = sqrt((point.u_amplitude - common) * (point.u_amplitude + common));
+    point.u_common = common / point.amplitude;
     return {};
   }
 

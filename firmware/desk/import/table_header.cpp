@@ -5,6 +5,10 @@
 #include <iterator>
 #include <string_view>
 
+#include "emax/base/decimal.hpp"
+#include "emax/base/span.hpp"
+#include "emax/base/status.hpp"
+
 namespace emax::desk {
 
 namespace {
@@ -25,16 +29,18 @@ constexpr std::string_view kAmplitudeWords[] = {"a",
                                                 "betrag",
                                                 "k",
                                                 "\303\274bertragungskoeffizient",
+                                                "\303\274bertragungsfaktor",
+                                                "amplitudengang",
                                                 "response",
                                                 "sensibilit\xC3\xA9"};
 constexpr std::string_view kPhaseWords[] = {
     "phase",  "phi",          "\xCF\x86",   "\xCF\x95",           "angle",
     "winkel", "phasenwinkel", "phasenlage", "phasenverschiebung", "phasengang"};
 constexpr std::string_view kUncertaintyWords[] = {
-    "u", "unc", "uncert", "uncertainty", "unsicherheit", "messunsicherheit", "incertitude"};
-constexpr std::string_view kFillers[] = {"of",    "the",      "in",       "der",      "des",
-                                         "abs",   "rel",      "relative", "expanded", "erweiterte",
-                                         "shift", "response", "value",    "measured"};
+    "u", "u95", "unc", "uncert", "uncertainty", "unsicherheit", "messunsicherheit", "incertitude"};
+constexpr std::string_view kFillers[] = {
+    "of",         "the",   "in",       "der",   "des",      "abs",  "rel", "relative", "expanded",
+    "erweiterte", "shift", "response", "value", "measured", "wert", "und", "and",      "erweitert"};
 // A column with one of these is none of ours.
 constexpr std::string_view kOtherWords[] = {
     "deviation",   "dev",      "error", "abweichung", "residual", "model",
@@ -47,6 +53,12 @@ bool is_one_of(std::string_view word, const std::string_view (&words)[kCount]) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
+char ascii_small(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
 bool is_part_of_word(char c) noexcept {
   const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   return is_letter || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80 || c == '%';
@@ -57,6 +69,17 @@ struct Word {
   std::size_t begin = 0;  // In the cell.
 };
 
+// Of A to Z and of the letters with accents of Latin-1.
+char small_letter(std::string_view cell, std::size_t at) noexcept {
+  constexpr unsigned kFirst = 0x80;
+  constexpr unsigned kLast = 0x9E;
+  constexpr unsigned kDistance = 0x20;
+  const char c = cell[at];
+  const unsigned byte = static_cast<unsigned char>(c);
+  const bool is_accented = at > 0 && cell[at - 1] == '\xC3' && byte >= kFirst && byte <= kLast;
+  return is_accented ? static_cast<char>(byte + kDistance) : ascii_small(c);
+}
+
 std::vector<Word> words_of(const std::string& cell) {
   std::vector<Word> words;
   for (std::size_t at = 0; at < cell.size(); ++at) {
@@ -66,8 +89,7 @@ std::vector<Word> words_of(const std::string& cell) {
     if (at == 0 || !is_part_of_word(cell[at - 1])) {
       words.push_back({"", at});
     }
-    const char c = cell[at];
-    words.back().text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    words.back().text += small_letter(cell, at);
   }
   return words;
 }
@@ -93,8 +115,7 @@ class NameReader final {
 
   /// @returns False for a word that is no part of a name: the unit starts there.
   bool take(const std::string& word) {
-    if (is_uncertainty_ && (word == "k" || word == "2" || word == "1") && !is_first_) {
-      column_.is_standard = column_.is_standard || word == "1";
+    if (is_uncertainty_ && word == "k" && !is_first_) {
       return true;
     }
     if (take_role(word)) {
@@ -109,12 +130,23 @@ class NameReader final {
       column_.is_lag = true;
       return true;
     }
+    if (is_uncertainty_ && (word == "common" || word == "shared")) {
+      is_common_ = true;
+      return true;
+    }
     return is_one_of(word, kFillers);
   }
 
   /// Says what the words have made of the column; a word alone such as "standard" makes nothing.
   void finish(Role before) {
-    column_.is_standard = is_uncertainty_ && (is_standard_ || column_.is_standard);
+    if (is_uncertainty_ && is_standard_) {
+      column_.is_contradictory = column_.coverage != 0.0 && column_.coverage != 1.0;
+      column_.coverage = 1.0;
+    }
+    if (is_common_) {
+      column_.role = Role::kCommonUncertainty;
+      return;
+    }
     if (!is_uncertainty_) {
       column_.role = is_standard_ ? Role::kIgnored : role_;
       return;
@@ -133,7 +165,7 @@ class NameReader final {
       return true;
     }
     if (role_ != Role::kIgnored) {
-      return false;
+      return take_second_role(word);
     }
     role_ = main_role(word, column_);
     if (role_ == Role::kIgnored && word.size() > 1 && word.front() == 'u') {
@@ -141,6 +173,15 @@ class NameReader final {
       is_uncertainty_ = is_uncertainty_ || role_ != Role::kIgnored;
     }
     return role_ != Role::kIgnored;
+  }
+
+  // "Frequency response amplitude", "phase of sensitivity", "sensitivity magnitude".
+  bool take_second_role(const std::string& word) {
+    Column other;
+    const Role role = word.size() > 2 ? main_role(word, other) : Role::kIgnored;
+    const bool is_wider = role == Role::kPhase || role == Role::kAmplitude;
+    role_ = is_wider && role_ != Role::kPhase ? role : role_;
+    return is_wider;
   }
 
   // What an uncertainty without a name belongs to: its unit knows (nobody states a phase in
@@ -159,8 +200,36 @@ class NameReader final {
   Role role_ = Role::kIgnored;
   bool is_uncertainty_ = false;
   bool is_standard_ = false;
+  bool is_common_ = false;
   bool is_first_ = true;
 };
+
+bool has_uncertainty_word(const std::vector<Word>& words) {
+  return std::any_of(words.begin(), words.end(), [](const Word& word) {
+    Column column;
+    return is_one_of(word.text, kUncertaintyWords) ||
+           (word.text.size() > 1 && word.text.front() == 'u' &&
+            main_role(std::string_view(word.text).substr(1), column) != Role::kIgnored);
+  });
+}
+
+// Takes what states a coverage factor out of a name.
+std::string without_coverage(const std::string& name, Column& column) {
+  std::string text = name;
+  if (!has_uncertainty_word(words_of(text))) {
+    return text;
+  }
+  for (CoverageFactor found = find_coverage(text, true); found.value > 0.0;
+       found = find_coverage(text, true)) {
+    column.is_contradictory = column.coverage > 0.0 && column.coverage != found.value;
+    column.coverage = found.value;
+    text.erase(found.begin, found.length);
+    if (column.is_contradictory) {
+      break;
+    }
+  }
+  return text;
+}
 
 Column read_name(const std::string& cell, Role before) {
   Column column;
@@ -168,7 +237,8 @@ Column read_name(const std::string& cell, Role before) {
   while (!column.name.empty() && (column.name.back() == ',' || column.name.back() == ':')) {
     column.name.pop_back();
   }
-  const std::vector<Word> words = words_of(column.name);
+  const std::string name = without_coverage(column.name, column);
+  const std::vector<Word> words = words_of(name);
   for (const Word& word : words) {
     if (is_one_of(word.text, kOtherWords)) {
       return column;
@@ -177,7 +247,7 @@ Column read_name(const std::string& cell, Role before) {
   NameReader reader(column);
   for (const Word& word : words) {
     if (!reader.take(word.text)) {
-      column.unit_spelling = column.name.substr(word.begin);
+      column.unit_spelling = name.substr(word.begin);
       break;
     }
   }
@@ -191,8 +261,27 @@ bool is_named(const std::vector<Column>& columns, Role role) {
   });
 }
 
+// Two uncertainties that do not say of what, behind both values, are in their order.
+void settle_pair(std::vector<Column>& columns) {
+  std::vector<Column*> assumed;
+  for (Column& column : columns) {
+    const bool is_uncertainty =
+        column.role == Role::kAmplitudeUncertainty || column.role == Role::kPhaseUncertainty;
+    if (is_uncertainty && column.is_assumed) {
+      assumed.push_back(&column);
+    }
+  }
+  const bool is_pair = assumed.size() == 2 && assumed[0]->role == assumed[1]->role &&
+                       assumed[0]->unit_spelling.empty() && assumed[1]->unit_spelling.empty();
+  if (is_pair) {
+    const bool is_phase_last = assumed[0]->role == Role::kPhaseUncertainty;
+    assumed[0]->role = is_phase_last ? Role::kAmplitudeUncertainty : Role::kPhaseUncertainty;
+  }
+}
+
 // An uncertainty that does not say of what is not that of which there is a column by name.
 void settle_assumptions(std::vector<Column>& columns) {
+  settle_pair(columns);
   for (Column& column : columns) {
     if (!column.is_assumed || !is_named(columns, column.role)) {
       continue;
@@ -226,17 +315,128 @@ Header read_header(const std::vector<std::string>& cells) {
   return header;
 }
 
-bool is_unit_row(const std::vector<std::string>& cells) {
-  std::size_t units = 0;
-  for (const std::string& cell : cells) {
-    // Columns that are not ours may be in any unit, so the first must be one of ours.
-    const bool is_unit = find_unit(cell).is_given() || as_decibel(cell).is_decibel;
-    if (&cell == &cells.front() && !is_unit) {
-      return false;
+bool continues_header(const std::vector<std::string>& cells) {
+  const auto is_ours = [](const std::string& cell) {
+    if (find_unit(cell).is_given() || as_decibel(cell).is_decibel) {
+      return true;
     }
-    units += is_unit ? 1U : 0U;
+    const std::vector<Word> words = words_of(cell);
+    return !words.empty() && std::all_of(words.begin(), words.end(), [](const Word& word) {
+      Column column;
+      return main_role(word.text, column) != Role::kIgnored || has_uncertainty_word({word}) ||
+             is_one_of(word.text, kFillers) || find_unit(word.text).is_given();
+    });
+  };
+  // Columns that are not ours may have any words, so the first must be one of ours.
+  return (cells.front().empty() || is_ours(cells.front())) &&
+         std::any_of(cells.begin(), cells.end(), is_ours);
+}
+
+std::vector<std::string> join_names(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& below) {
+  std::vector<std::string> joined;
+  std::string group;
+  for (std::size_t i = 0; i < std::max(names.size(), below.size()); ++i) {
+    const std::string name = i < names.size() ? names[i] : "";
+    const std::string cell = i < below.size() ? below[i] : "";
+    group = name.empty() ? group : name;
+    const std::string& upper = cell.empty() ? name : group;
+    if (upper.empty() || cell.empty()) {
+      joined.push_back(upper + cell);
+      continue;
+    }
+    // The unit goes to the end; one of the second line is nearer to the numbers.
+    const std::string unit = read_name(upper, Role::kIgnored).unit_spelling;
+    const std::size_t end = unit.empty() ? std::string::npos : upper.rfind(unit);
+    const std::string_view words = std::string_view(upper).substr(0, end);
+    const bool has_own = find_unit(cell).is_given() || as_decibel(cell).is_decibel ||
+                         !read_name(cell, Role::kIgnored).unit_spelling.empty();
+    joined.push_back(std::string(words) + " " + cell +
+                     (has_own || end == std::string::npos ? "" : " " + unit));
   }
-  return units >= 2;
+  return joined;
+}
+
+namespace {
+
+// A number of the form 2, 2.0 or 2,00 at the beginning of a text.
+struct SmallNumber {
+  double value = 0.0;
+  std::size_t length = 0;
+};
+
+SmallNumber small_number(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_sign = (text[i] == '.' || text[i] == ',') && i > 0 && i + 1 < text.size() &&
+                         is_digit(text[i + 1]) && plain.find('.') == std::string::npos;
+    if (!is_digit(text[i]) && !is_sign) {
+      break;
+    }
+    plain += is_sign ? '.' : text[i];
+  }
+  const ParsedNumber parsed = parse_decimal(Span<const char>(plain.data(), plain.size()));
+  return parsed.status == Status::kOk ? SmallNumber{parsed.value, plain.size()} : SmallNumber{};
+}
+
+std::size_t skip_blanks(std::string_view text, std::size_t at) noexcept {
+  while (at < text.size() && (text[at] == ' ' || text[at] == '\t')) {
+    ++at;
+  }
+  return at;
+}
+
+bool is_letter(char c) noexcept { return is_part_of_word(c) && !is_digit(c) && c != '%'; }
+
+// At a small k that is a word: "k = 2", "k=2,00"; "k2" and "k 2" where `is_uncertainty`.
+CoverageFactor coverage_at_k(std::string_view text, std::size_t at, bool is_uncertainty) {
+  std::size_t next = skip_blanks(text, at + 1);
+  const bool has_sign = next < text.size() && (text[next] == '=' || text[next] == ':');
+  next = has_sign ? skip_blanks(text, next + 1) : next;
+  const SmallNumber number = small_number(text.substr(std::min(next, text.size())));
+  const std::size_t end = next + number.length;
+  const bool is_whole = end >= text.size() || !is_letter(text[end]);
+  if (number.length == 0 || !is_whole || !(has_sign || is_uncertainty)) {
+    return {};
+  }
+  return {number.value, at, end - at};
+}
+
+// "2 sigma", and the level that two of them stand for, "95 %".
+CoverageFactor coverage_by_words(std::string_view text, std::size_t at, bool is_uncertainty) {
+  constexpr double kTwoSigmaPercent = 95.0;
+  const SmallNumber number = small_number(text.substr(at));
+  std::size_t next = skip_blanks(text, at + number.length);
+  next += next < text.size() && text[next] == '-' ? 1U : 0U;
+  for (const std::string_view word : {"sigma", "Sigma", "\xCF\x83"}) {
+    if (text.substr(std::min(next, text.size()), word.size()) == word) {
+      return {number.value, at, next + word.size() - at};
+    }
+  }
+  const bool is_percent = next < text.size() && text[next] == '%';
+  if (is_uncertainty && is_percent && number.value >= kTwoSigmaPercent &&
+      number.value < kTwoSigmaPercent + 1.0) {
+    return {2.0, at, next + 1 - at};
+  }
+  return {};
+}
+
+}  // namespace
+
+CoverageFactor find_coverage(std::string_view text, bool is_uncertainty) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool begins = at == 0 || !is_part_of_word(text[at - 1]);
+    CoverageFactor found;
+    if (begins && text[at] == 'k') {
+      found = coverage_at_k(text, at, is_uncertainty);
+    } else if (begins && is_digit(text[at])) {
+      found = coverage_by_words(text, at, is_uncertainty);
+    }
+    if (found.value > 0.0) {
+      return found;
+    }
+  }
+  return {};
 }
 
 std::size_t column_of(const std::vector<Column>& columns, Role role) noexcept {

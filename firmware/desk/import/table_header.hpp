@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "desk/import/input_units.hpp"
@@ -17,17 +18,19 @@ enum class Role : std::uint8_t {
   kPhase,
   kAmplitudeUncertainty,
   kPhaseUncertainty,
+  kCommonUncertainty,  ///< Of the amplitude, what all points have in common.
 };
 
 /// One column by its name.
 struct Column {
   Role role = Role::kIgnored;
-  std::string name;           ///< As it stands in the header.
-  std::string unit_spelling;  ///< What stands behind the name; empty if nothing does.
-  bool is_omega = false;      ///< The name is that of an angular frequency.
-  bool is_lag = false;        ///< The name says lag: positive where the output is late.
-  bool is_assumed = false;    ///< An uncertainty that does not say of what.
-  bool is_standard = false;   ///< A standard uncertainty (k = 1), not an expanded one.
+  std::string name;               ///< As it stands in the header.
+  std::string unit_spelling;      ///< What stands behind the name; empty if nothing does.
+  bool is_omega = false;          ///< The name is that of an angular frequency.
+  bool is_lag = false;            ///< The name says lag: positive where the output is late.
+  bool is_assumed = false;        ///< An uncertainty that does not say of what.
+  double coverage = 0.0;          ///< The coverage factor k that the name states; 0 for none.
+  bool is_contradictory = false;  ///< It states k twice, with different values.
 };
 
 /// @returns What one name says. Words that are not known make an ignored column.
@@ -46,8 +49,25 @@ struct Header {
 /// before it.
 Header read_header(const std::vector<std::string>& cells);
 
-/// @returns Whether every cell that is not empty is a unit, and at least two are.
-bool is_unit_row(const std::vector<std::string>& cells);
+/// @returns Whether a line below a header goes on with it: it has units or words of a name in its
+/// first cell or none there, and units or such words in at least one.
+bool continues_header(const std::vector<std::string>& cells);
+
+/// Names over two lines, such as "Sensitivity" above "mV/g", or "Phase" above "value" and "U": a
+/// name holds for the empty cells behind it.
+std::vector<std::string> join_names(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& below);
+
+/// A coverage factor in a text.
+struct CoverageFactor {
+  double value = 0.0;  ///< 0 for none.
+  std::size_t begin = 0;
+  std::size_t length = 0;  ///< Of the characters that state it.
+};
+
+/// Finds "k = 2" with a small k that is a word by itself, "k2" and "k 2" if `is_uncertainty`, and
+/// "2 sigma".
+CoverageFactor find_coverage(std::string_view text, bool is_uncertainty);
 
 /// @returns The column of that role; the number of columns if there is none.
 std::size_t column_of(const std::vector<Column>& columns, Role role) noexcept;

@@ -1,13 +1,25 @@
 // What was understood of a table, in one line.
 #include "desk/import/understanding.hpp"
 
+#include <cstdio>
 #include <string_view>
 
 #include "desk/import/table_layout.hpp"
+#include "desk/import/table_statements.hpp"
 
 namespace emax::desk {
 
 namespace {
+
+std::string number(double value) {
+  char text[32];
+  (void)std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string value_of(const GivenUncertainty& given) {
+  return number(given.value) + " " + given.unit.name;
+}
 
 void add_uncertainty_units(const Conversions& by, std::string& text) {
   const auto name = [](const Conversion& u) { return u.is_decibel ? "dB" : u.unit.name; };
@@ -21,19 +33,46 @@ void add_uncertainty_units(const Conversions& by, std::string& text) {
       std::string_view(by.u_phase().unit.name) != by.phase().unit.name) {
     text += std::string(", ") + by.u_phase().unit.name;
   }
-  if (by.u_amplitude().coverage == 1.0 || by.u_phase().coverage == 1.0) {
-    text += ", standard uncertainties";
+}
+
+// The coverage factor where it is not 2, and what --uncertainty says.
+void add_uncertainties(const Conversions& by, const ImportOptions& options, std::string& text) {
+  const Conversion& of_amplitude = by.u_amplitude();
+  const Conversion& of_phase = by.u_phase();
+  const bool are_equal =
+      !of_amplitude.is_there || !of_phase.is_there || of_amplitude.coverage == of_phase.coverage;
+  const double coverage = of_amplitude.is_there ? of_amplitude.coverage : of_phase.coverage;
+  if (!are_equal) {
+    text += ", " + text_of_coverage(of_amplitude.coverage) + " (amplitude), " +
+            text_of_coverage(of_phase.coverage) + " (phase)";
+  } else if ((of_amplitude.is_there || of_phase.is_there) && coverage != kImportCoverage) {
+    text += coverage == 1.0 ? ", standard uncertainties" : ", " + text_of_coverage(coverage);
   }
-  if (!by.u_amplitude().is_there || (by.phase().is_there && !by.u_phase().is_there)) {
-    text += ", uncertainties by --uncertainty";
+  const bool is_amplitude_given = !of_amplitude.is_there;
+  const bool is_phase_given = by.phase().is_there && !of_phase.is_there;
+  if (is_amplitude_given || is_phase_given) {
+    text += ", U = ";
+    text += is_amplitude_given ? value_of(options.amplitude_uncertainty) : "";
+    text += is_amplitude_given && is_phase_given ? " and " : "";
+    text += is_phase_given ? value_of(options.phase_uncertainty) : "";
+    text += " by --uncertainty";
   }
+  text += by.u_common().is_there ? ", with what all points have in common" : "";
 }
 
 void add_changes(const Conversions& by, const ImportOptions& options, std::string& text) {
   text += by.phase().sign < 0.0 ? "; a lag is positive" : "";
   text += options.is_inverted ? "; polarity turned round" : "";
-  text += options.channel_delay_s != 0.0 ? "; the channel's delay taken out" : "";
+  if (options.channel_delay_s != 0.0) {
+    text += "; the channel's delay of " + number(options.channel_delay_s) + " s taken out";
+  }
   text += by.amplitude().unit.is_charge ? "; 1 pC is taken as 1 V" : "";
+}
+
+// Of the fit in a table that emax has written.
+bool is_own_column(std::string_view name) noexcept {
+  return name == "model_amplitude" || name == "model_phase_deg" || name == "residual_re" ||
+         name == "residual_im";
 }
 
 void add_form(const FoundTable& table, std::string& text) {
@@ -46,7 +85,7 @@ void add_form(const FoundTable& table, std::string& text) {
   }
   std::string unused;
   for (const Column& column : table.columns) {
-    if (column.role == Role::kIgnored && !column.name.empty()) {
+    if (column.role == Role::kIgnored && !column.name.empty() && !is_own_column(column.name)) {
       unused += (unused.empty() ? "" : ", ") + column.name;
     }
   }
@@ -62,6 +101,7 @@ std::string understanding_of(const FoundTable& table, const Conversions& by,
   text += by.amplitude().unit.name;
   text += by.phase().is_there ? std::string(", ") + by.phase().unit.name : ", no phase";
   add_uncertainty_units(by, text);
+  add_uncertainties(by, options, text);
   text += "; " + count_of(merged.rows.size(), "point");
   if (merged.repeats > 0) {
     text += ", " + std::to_string(merged.repeats) + " of them the mean of repeated rows";

@@ -98,7 +98,7 @@ TEST(Import, DecimalCommas) {
   }
   // A point among decimal commas groups thousands, or is a slip.
   EXPECT_EQ(refused("30;1,5;-2;0,03;1\n1.040;2,5;-3;0,05;2\n50;3,5;-4;0,07;3\n").problem,
-            "f_hz is not a number");
+            "f_hz has a point among decimal commas: \"1.040\" (column 1)");
 }
 
 TEST(Import, Encodings) {
@@ -216,9 +216,9 @@ TEST(Import, PhasesMayBeMissing) {
   EXPECT_EQ(found.points.known_phases(), 1U);
   EXPECT_EQ(imported("f,A,U(A)\n1,2,0.1\n2,2,0.1\n3,2,0.1\n").points.known_phases(), 0U);
   EXPECT_EQ(refused(std::string(kHeader) + "30,1.5,,0.03,1\n" + kRows).problem,
-            "phase_deg is missing");
+            "phase_deg is missing (column 3)");
   EXPECT_EQ(refused(std::string(kHeader) + "30,1.5,2,0.03,\n" + kRows).problem,
-            "u_phase_deg is missing");
+            "u_phase_deg is missing (column 5)");
 }
 
 TEST(Import, OptionsSayWhatTheTableDoesNot) {
@@ -269,17 +269,17 @@ TEST(Import, EveryComplaintNamesItsLine) {
     const char* row;
     const char* problem;
   } cases[] = {
-      {"40,2.5,-3,0.05", "there are 4 columns"},
-      {"40,2.5,-3,0.05,2,7", "there are 6 columns"},
-      {"x,2.5,-3,0.05,2", "f_hz is not a number"},
-      {"40,2.5x,-3,0.05,2", "amplitude is not a number"},
-      {"40,2.5,-3,inf,2", "u_amplitude is not a finite number"},
-      {"40,0,-3,0.05,2", "amplitude is zero or negative"},
-      {"-40,2,-3,0.05,2", "f_hz is zero or negative"},
-      {"40,2,-3,0,2", "u_amplitude is zero or negative"},
-      {"40,2,-3,0.05,-1", "u_phase_deg is zero or negative"},
-      {"40,2,361,0.05,1", "phase_deg is outside -360 to 360"},
-      {"end of the table", "there is 1 column"},
+      {"40,2.5,-3,0.05", "there are 4 columns: \"40,2.5,-3,0.05\""},
+      {"40,2.5,-3,0.05,2,7", "there are 6 columns: \"40,2.5,-3,0.05,2,7\""},
+      {"x,2.5,-3,0.05,2", "f_hz is not a number: \"x\" (column 1)"},
+      {"40,2.5x,-3,0.05,2", "amplitude is not a number: \"2.5x\" (column 2)"},
+      {"40,2.5,-3,inf,2", "u_amplitude is not a finite number: \"inf\" (column 4)"},
+      {"40,0,-3,0.05,2", "amplitude is zero or negative: \"0\" (column 2)"},
+      {"-40,2,-3,0.05,2", "f_hz is zero or negative: \"-40\" (column 1)"},
+      {"40,2,-3,0,2", "u_amplitude is zero or negative: \"0\" (column 4)"},
+      {"40,2,-3,0.05,-1", "u_phase_deg is zero or negative: \"-1\" (column 5)"},
+      {"40,2,361,0.05,1", "phase_deg is outside -360 to 360: \"361\" (column 3)"},
+      {"end of the table", "there is 1 column: \"end of the table\""},
   };
   for (const auto& expected : cases) {
     const ImportError error = refused(head + expected.row + "\n" + kRows);
@@ -287,6 +287,256 @@ TEST(Import, EveryComplaintNamesItsLine) {
     EXPECT_EQ(error.line, 5U) << expected.row;
   }
   EXPECT_EQ(refused("30,x,-2,0.03,1\n40,2.5,-3,0.05,2\n").line, 1U);
+}
+
+// Standard uncertainties of the first row: of the amplitude 2 and of the phase in degrees.
+void expect_uncertainties(const std::string& text, double u_amplitude, double u_deg) {
+  SCOPED_TRACE(text);
+  const ImportedPoints found = imported(text);
+  ASSERT_EQ(found.points.size(), 3U);
+  EXPECT_NEAR(found.points.points()[0].u_amplitude, u_amplitude, kRounding * u_amplitude);
+  EXPECT_NEAR(found.points.points()[0].u_phase_rad, u_deg * kDegree, kRounding * u_deg);
+}
+
+const char* const kPlainRows = "3,2,1,0.4,0.5\n4,2,1,0.4,0.5\n5,2,1,0.4,0.5\n";
+
+TEST(Import, CoverageFactors) {
+  const std::string rows = kPlainRows;
+  // In names.
+  for (const char* names :
+       {"U (k=1),U phase (k=1)", "U(A) (k = 1),U(phase) (k = 1.00)", "u_A k1,u_phase k 1",
+        "standard uncertainty of A,std uncertainty of phase",
+        "U(A) (1 sigma),U(phase) (1 \u03C3)"}) {
+    expect_uncertainties(std::string("f,A,phase,") + names + "\n" + rows, 0.4, 0.5);
+  }
+  expect_uncertainties("f,A,phase,\"U(A) (k=2,00) [%]\",U(phase) (k=3)\n" + rows, 0.004, 0.5 / 3.0);
+  expect_uncertainties("f,A,phase,U(A) (95 %) [%],U(phase) (2 sigma)\n" + rows, 0.004, 0.25);
+  // In lines before the header and in comments, for both.
+  const std::string plain = "f,A,phase,U(A),U(phase)\n" + rows;
+  for (const char* line :
+       {"Coverage factor: 3", "Coverage factor (k): 3.0", "k = 3", "# all uncertainties with k=3",
+        "k,3", "Erweiterungsfaktor;3,0", "expanded uncertainty (k=3) of all values",
+        "the standard uncertainty multiplied by the coverage factor k = 3, 99.7 %",
+        "Facteur d'\u00E9largissement k = 3"}) {
+    expect_uncertainties(std::string(line) + "\n" + plain, 0.4 / 3.0, 0.5 / 3.0);
+  }
+  expect_uncertainties("Standard uncertainties\n" + plain, 0.4, 0.5);
+  expect_uncertainties("# k = 1\n" + rows, 0.4, 0.5);
+  expect_uncertainties(rows + "# k = 1\n", 0.4, 0.5);
+  EXPECT_NE(imported("k = 3\n" + plain).understanding.find(", k = 3;"), std::string::npos);
+  EXPECT_NE(imported("k = 1\n" + plain).understanding.find("standard uncertainties"),
+            std::string::npos);
+  // Other letters k, and what is no coverage factor.
+  for (const char* line : {"spring constant k = 3 N/m", "K = 3", "k = 300", "rank=3",
+                           "Sensitivity k = 3.0 mV/g at 160 Hz", "stock=1"}) {
+    expect_uncertainties(std::string(line) + "\n" + plain, 0.2, 0.25);
+  }
+}
+
+TEST(Import, CoverageFactorsThatContradict) {
+  const std::string rows = kPlainRows;
+  const auto problem = [&rows](const std::string& head) { return refused(head + rows).problem; };
+  EXPECT_EQ(problem("k = 2\ncoverage factor 3\nf,A,phase,U(A),U(phase)\n"),
+            "this line says k = 3, and line 1 says k = 2");
+  EXPECT_EQ(problem("# k = 2\nf,A,phase,U(A) (k=1),U(phase) (k=2)\n"),
+            "\"U(A) (k=1)\" says k = 1, and line 1 says k = 2");
+  EXPECT_EQ(problem("f,A,phase,U(A) (k=3),U(phase)\n"),
+            "\"U(A) (k=3)\" says k = 3, and \"U(phase)\" says nothing of its coverage factor");
+  EXPECT_EQ(problem("f,A,phase,standard uncertainty of A (k=2),U(phase) k=2\n"),
+            "\"standard uncertainty of A (k=2)\" states two coverage factors");
+  // The same value twice is no contradiction.
+  expect_uncertainties("k = 3\n# coverage factor: 3\nf,A,phase,U(A) (k=3),U(phase)\n" + rows,
+                       0.4 / 3.0, 0.5 / 3.0);
+}
+
+TEST(Import, UnitsInLinesBeforeTheHeader) {
+  const std::string table = std::string("f,A,phase,U(A),U(phase)\n") + kPlainRows;
+  constexpr double kG = 9.80665;
+  for (const char* line :
+       {"Units: kHz, mV/g, rad", "Einheiten;kHz;mV/g;rad", "# f in kHz, A in mV/g, phase in rad",
+        "Frequency (kHz), sensitivity (mV/g), phase (rad)"}) {
+    SCOPED_TRACE(line);
+    // A line with all names is itself a header: the names of the table would be a second one.
+    const bool is_header = std::string(line).find("Frequency") == 0;
+    const ImportedPoints found = is_header
+                                     ? imported(std::string(line) + ",U(A),U(phase)\n" + kPlainRows)
+                                     : imported(std::string(line) + "\n" + table);
+    ASSERT_EQ(found.points.size(), 3U);
+    expect_point(found.points.points()[0], 3e3, 2e-3 / kG, 1.0 / kDegree, 0.4e-3 / kG,
+                 0.5 / kDegree);
+  }
+  EXPECT_EQ(refused("Units: kHz\nUnits: Hz\n" + table).problem,
+            "this line says Hz, and line 1 says kHz");
+  EXPECT_EQ(
+      refused(std::string("Unit of A: mV/g\nf,A [V/g],phase,U(A),U(phase)\n") + kPlainRows).problem,
+      "\"A [V/g]\" is in V/g, and line 1 says mV/g");
+  // What says nothing of units is passed over.
+  for (const char* line : {"Unit under test: 4711", "Sensitivity at 160 Hz: 10.2 mV/g",
+                           "Phase reference: front", "Unit: no. 5"}) {
+    expect_uncertainties(std::string(line) + "\n" + table, 0.2, 0.25);
+  }
+}
+
+TEST(Import, HeadersOverTwoLines) {
+  constexpr double kG = 9.80665;
+  for (const char* header :
+       {"f;Sensitivity;Phase;U(A);U(phase)\nkHz;mV/g;deg;%;deg",
+        "f;Sensitivity;Phase;U(A);U(phase)\n[kHz];[mV/g];[\u00B0];[%];[\u00B0]",
+        "Frequency;Sensitivity;Phase;Expanded;Expanded\nkHz;mV/g;deg;uncertainty [%];uncertainty "
+        "[deg]"}) {
+    SCOPED_TRACE(header);
+    std::string rows = kPlainRows;
+    std::replace(rows.begin(), rows.end(), ',', ';');
+    expect_point(imported(std::string(header) + "\n" + rows).points.points()[0], 3e3, 2e-3 / kG,
+                 1.0, 0.008e-3 / kG, 0.5);
+  }
+  // A name above several columns; the row is f, A, U, phase, U.
+  for (const char* header : {"Frequency,Sensitivity,,Phase,\n,value,U,value,U",
+                             ",Sensitivity,,Phase,\nf,value,U,value,U",
+                             "Frequency,Sensitivity [V/(m/s^2)],,Phase [deg],\nHz,value,U,value,U",
+                             "Frequency,Magnitude,,Phase,\n,value,U,value,U\nHz,,,deg,deg"}) {
+    SCOPED_TRACE(header);
+    expect_point(imported(std::string(header) + "\n3,2,0.4,1,0.5\n4,2,0.4,1,0.5\n5,2,0.4,1,0.5\n")
+                     .points.points()[0],
+                 3.0, 2.0, 1.0, 0.4, 0.5);
+  }
+  EXPECT_EQ(refused("f;Sensitivity;Phase;U(A);U(phase)\nHz;lbf;deg;%;deg\n3;2;1;1;1\n4;2;1;1;1\n")
+                .problem,
+            "the unit \"lbf\" of \"Sensitivity lbf\" is not known");
+}
+
+TEST(Import, TwoUncertaintiesOfTheSameName) {
+  for (const char* header :
+       {"f,A,phase,U,U", "f,A,phase,U [V/(m/s2)],U [deg]", "f,A,phase,uncertainty,uncertainty"}) {
+    expect_uncertainties(std::string(header) + "\n" + kPlainRows, 0.2, 0.25);
+  }
+  expect_uncertainties("f,A,U,phase,U\n3,2,0.4,1,0.5\n4,2,0.4,1,0.5\n5,2,0.4,1,0.5\n", 0.2, 0.25);
+}
+
+TEST(Import, MarksOfThousands) {
+  const struct {
+    const char* rows;
+    const char* what;
+  } tables[] = {
+      {"1234.5,2,1,0.4,0.5\n", "none"},
+      {"\"1,234.5\",2,1,0.4,0.5\n", "comma"},
+      {"1'234.5,2,1,0.4,0.5\n", "apostrophe"},
+      {"1 234.5,2,1,0.4,0.5\n", "blank"},
+      {"1\u202F234.5,2,1,0.4,0.5\n", "narrow blank"},
+  };
+  for (const auto& table : tables) {
+    SCOPED_TRACE(table.what);
+    const ImportedPoints found =
+        imported(std::string(table.rows) + "2000,2,1,0.4,0.5\n3000,2,1,0.4,0.5\n");
+    EXPECT_EQ(found.points.points()[0].frequency_hz, 1234.5);
+  }
+  EXPECT_EQ(imported("1.234,5;2;1;0,4;0,5\n2.000.000;2;1;0,4;0,5\n3000;2;1;0,4;0,5\n")
+                .points.points()[0]
+                .frequency_hz,
+            1234.5);
+  // A thousand, or one with a decimal comma?
+  const ImportError error = refused("30;1.5;-2;0.03;1\n1,040;2.5;-3;0.05;2\n50;3.5;-4;0.07;3\n");
+  EXPECT_EQ(error.problem, "f_hz has a comma among decimal points: \"1,040\" (column 1)");
+  EXPECT_EQ(error.line, 2U);
+  for (const char* cell : {"1,23.5", "0,123.5", "12,34,567", "1,2345.5", "1234,567.5"}) {
+    EXPECT_EQ(
+        refused("30,2,1,0.4,0.5\n\"" + std::string(cell) + "\",2,1,0.4,0.5\n40,2,1,0.4,0.5\n").line,
+        2U)
+        << cell;
+  }
+}
+
+TEST(Import, UnitsBehindNumbers) {
+  constexpr double kG = 9.80665;
+  const ImportedPoints found = imported(
+      "Frequency;Sensitivity;Phase;U;U\n100 Hz;2 mV/g;-1\u00B0;1 %;0.5 deg\n1 kHz;2 "
+      "mV/g;-2\u00B0;1 "
+      "%;0.5 deg\n3 kHz;0.002 V/g;-3\u00B0;1%;0.5 deg\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  expect_point(found.points.points()[0], 100.0, 2e-3 / kG, -1.0, 0.02e-3 / kG, 0.5);
+  expect_point(found.points.points()[2], 3000.0, 2e-3 / kG, -3.0, 0.02e-3 / kG, 0.5);
+  EXPECT_NE(found.understanding.find("read as Hz, mV/g, deg, percent"), std::string::npos);
+  EXPECT_EQ(
+      refused("f;A;phase;U;U\n100 Hz;2 V/g;1;1;1\n200 Hz;2 Hz;1;1;1\n300 Hz;2 V/g;1;1;1\n").problem,
+      "A is in another unit than its column: \"2 Hz\" (column 2)");
+}
+
+TEST(Import, CellsOfSpreadsheetsWithoutAValue) {
+  const ImportedPoints found = imported(
+      std::string(kHeader) + "30,1.5,#N/A,0.03,#N/A\n40,2.5,-3,0.05,2\n50,3.5,#NV,0.07,NA\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  EXPECT_EQ(found.points.known_phases(), 1U);
+  const struct {
+    const char* row;
+    const char* problem;
+  } cases[] = {
+      {"40,#N/A,-3,0.05,2", "amplitude is missing: \"#N/A\" (column 2)"},
+      {"40,2.5,-3,#DIV/0!,2", "u_amplitude is not a number: \"#DIV/0!\" (column 4)"},
+      {"#WERT!,2.5,-3,0.05,2", "f_hz is not a number: \"#WERT!\" (column 1)"},
+      {"40,a cell with more than forty characters in it,-3,0.05,2",
+       "amplitude is not a number: \"a cell with more than forty characters i...\" (column 2)"},
+  };
+  for (const auto& expected : cases) {
+    EXPECT_EQ(refused(std::string(kHeader) + kRows + expected.row + "\n").problem,
+              expected.problem);
+  }
+  // Behind a blank it is a comment as before.
+  expect_rows(imported(std::string(kHeader) + "30,1.5,-2,0.03,1 # N/A\n" + (kRows + 16)));
+}
+
+TEST(Import, OptionsAboutPhasesThatAreNotThere) {
+  const std::string table = "f,A,U(A)\n1,2,0.1\n2,2,0.1\n3,2,0.1\n";
+  ImportOptions delay;
+  ASSERT_TRUE(take_channel_delay("1e-5", delay));
+  EXPECT_EQ(refused(table, delay).problem, "there are no phases that --channel-delay could change");
+  ImportOptions inverted;
+  inverted.is_inverted = true;
+  EXPECT_EQ(refused(table, inverted).problem, "there are no phases that --invert could change");
+  ImportOptions unit;
+  ASSERT_TRUE(take_input_units("rad", unit));
+  EXPECT_EQ(refused(table, unit).problem,
+            "the table has no phase, and --input-units speaks of one");
+  ImportOptions u;
+  ASSERT_TRUE(take_uncertainty("1%,1deg", u));
+  EXPECT_EQ(refused("f,A\n1,2\n2,2\n3,2\n", u).problem,
+            "the table has no phase, and --uncertainty speaks of one");
+  // An uncertainty is stated once.
+  EXPECT_EQ(refused("f,A,phase,U(A)\n1,2,0,0.1\n2,2,0,0.1\n3,2,0,0.1\n", u).problem,
+            "the table has uncertainties of its own for the amplitude");
+}
+
+TEST(Import, WhatWasUnderstoodHasItsValues) {
+  ImportOptions options;
+  ASSERT_TRUE(take_channel_delay("1e-5", options));
+  ASSERT_TRUE(take_uncertainty("1%,0.5deg", options));
+  EXPECT_EQ(imported("f,A,phase\n1,2,0\n2,2,0\n3,2,0\n", options).understanding,
+            "read as Hz, V/(m/s2), deg, U = 1 percent and 0.5 deg by --uncertainty; 3 points; the "
+            "channel's delay of 1e-05 s taken out");
+}
+
+TEST(Import, WhatThePointsHaveInCommon) {
+  const std::string header = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,u_common\n";
+  const std::string rows = "30,2,-2,0.10,1,0.06\n40,2,-3,0.10,2,0.08\n50,2,-4,0.10,3,0\n";
+  const std::string shared =
+      "# shared: skew=1e-07 clock=2e-05 drift=0.0001 corner=50 images=1e-6 leak=2e-6 "
+      "leak_back=3e-6 "
+      "linearity=1e-5\n";
+  const ImportedPoints found = imported(header + rows + shared);
+  ASSERT_EQ(found.points.size(), 3U);
+  EXPECT_TRUE(found.states_common);
+  // A right triangle of 3, 4 and 5; half of all for k = 2.
+  EXPECT_NEAR(found.points.points()[0].u_amplitude, 0.04, 1e-15);
+  EXPECT_NEAR(found.points.points()[1].u_amplitude, 0.03, 1e-15);
+  EXPECT_NEAR(found.points.common()[0], 0.03 / 2.0, 1e-15);
+  EXPECT_EQ(found.points.common()[2], 0.0);
+  EXPECT_EQ(found.points.shared().skew_s, 1e-7);
+  EXPECT_EQ(found.points.shared().linearity, 1e-5);
+  EXPECT_EQ(found.points.shared().corner_hz, 50.0);
+  EXPECT_EQ(refused(header + rows + "# shared: skew=x\n").line, 5U);
+  EXPECT_EQ(refused(header + rows + "# shared: tilt=1\n").problem,
+            "what all points share is not readable");
+  EXPECT_EQ(refused(header + "30,2,-2,0.10,1,0.2\n" + rows).problem,
+            "u_common is not below the uncertainty that contains it: \"0.2\" (column 6)");
 }
 
 TEST(Import, HowMany) {

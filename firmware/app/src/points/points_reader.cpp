@@ -11,16 +11,16 @@ namespace emax::app {
 namespace {
 
 constexpr std::size_t kColumns = 5;
-// The header of frequency_response.csv from the sixth column on, in small letters.
-constexpr const char* kFitColumns[] = {"model_amplitude", "model_phase_deg", "residual_re",
-                                       "residual_im"};
-constexpr std::size_t kColumnsWithFit = kColumns + sizeof kFitColumns / sizeof kFitColumns[0];
+// The header of frequency_response.csv from the sixth column on, in small letters; each may be
+// missing.
+constexpr const char* kMoreColumns[] = {"model_amplitude", "model_phase_deg", "residual_re",
+                                        "residual_im", "u_common"};
 constexpr double kCoverageFactor = 2.0;
 constexpr double kMaxPhase_deg = 360.0;
 
 constexpr char kExpectedColumns[] =
     "expected five numbers separated by commas: f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg";
-constexpr char kExpectedColumnsWithFit[] = "expected nine columns, as many as the header has";
+constexpr char kExpectedColumnsOfHeader[] = "expected as many columns as the header has";
 constexpr char kExpectedCommas[] =
     "expected numbers separated by commas, with a point as decimal sign: "
     "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg";
@@ -131,20 +131,21 @@ bool is_header_line(Span<const char> line) noexcept {
   return is_letter(line[0]) && !is_word_for_no_number(take_field(line));
 }
 
-/// The header that emax gives a table of points with their fit.
-bool is_header_with_fit(Span<const char> line) noexcept {
-  if (count_columns(line) != kColumnsWithFit) {
-    return false;
-  }
+/// The number of columns of a header that emax gives a table of points, 0 if it is none.
+std::size_t columns_of_own_header(Span<const char> line) noexcept {
+  const std::size_t columns = count_columns(line);
   for (std::size_t column = 0; column < kColumns; ++column) {
     (void)take_field(line);
   }
-  for (const char* name : kFitColumns) {
-    if (!starts_with(take_field(line), name)) {
-      return false;
+  std::size_t known = kColumns;
+  for (const char* name : kMoreColumns) {
+    Span<const char> rest = line;
+    if (known < columns && starts_with(take_field(rest), name)) {
+      line = rest;
+      ++known;
     }
   }
-  return true;
+  return known == columns ? columns : 0;
 }
 
 /// A tab inside a field, not just around a number: the tab is meant to separate.
@@ -225,13 +226,13 @@ void PointsReader::add_line(Span<const char> line) noexcept {
   }
   const bool is_header = !header_is_past_ && is_header_line(line);
   header_is_past_ = true;
-  if (is_header && is_header_with_fit(line)) {
-    columns_ = kColumnsWithFit;
+  if (is_header && columns_of_own_header(line) > kColumns) {
+    columns_ = columns_of_own_header(line);
   }
   const std::size_t columns = count_columns(line);
   if (columns != columns_) {
     fail(kFound[columns < kMostNamed ? columns : kMostNamed],
-         columns_ == kColumns ? kExpectedColumns : kExpectedColumnsWithFit);
+         columns_ == kColumns ? kExpectedColumns : kExpectedColumnsOfHeader);
     return;
   }
   if (!is_header) {

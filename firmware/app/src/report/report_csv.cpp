@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kCoverageFactor = 2.0;
 constexpr int kTableDigits = 15;
+constexpr int kSharedDigits = 12;
 
 void write_row(Span<const double> numbers, TextWriter& out) noexcept {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -41,6 +42,33 @@ void write_point(const ResponsePoint& point, double common_u, TextWriter& out) n
   }
 }
 
+/// What all points have in common, expanded, in the unit of the amplitude.
+void write_common(const ResponsePoint& point, double common_u, TextWriter& out) noexcept {
+  out.text(",").general(kCoverageFactor * common_u * point.amplitude, kTableDigits);
+}
+
+/// What points share in other ways than by one factor, for whoever reads the table back.
+void write_shared(const SharedEffects& shared, TextWriter& out) noexcept {
+  const struct {
+    const char* name;
+    double value;
+  } effects[] = {{"skew", shared.skew_s},         {"clock", shared.clock},
+                 {"drift", shared.drift},         {"corner", shared.corner_hz},
+                 {"images", shared.images},       {"leak", shared.leak},
+                 {"leak_back", shared.leak_back}, {"linearity", shared.linearity}};
+  // The corner alone is no effect.
+  const double sum = shared.skew_s + shared.clock + shared.drift + shared.images + shared.leak +
+                     shared.leak_back + shared.linearity;
+  if (!(sum > 0.0)) {
+    return;
+  }
+  out.text("# shared:");
+  for (const auto& effect : effects) {
+    out.text(" ").text(effect.name).text("=").general(effect.value, kSharedDigits);
+  }
+  out.line();
+}
+
 /// Row `row` of `rows` equally spaced ones from 0 to `end`; the last is `end` itself.
 double spaced(std::size_t row, std::size_t rows, double end) noexcept {
   return row + 1 == rows ? end : end * (static_cast<double>(row) / static_cast<double>(rows - 1));
@@ -65,31 +93,44 @@ void write_signal_row(const EvaluationResults& results, double time_s, double si
 }  // namespace
 
 void write_frequency_response_csv(const EvaluationResults& results, TextWriter& out) noexcept {
+  const FrequencyResponse& response = results.fit.response();
+  const bool has_points = results.source == Source::kPoints;
+  const bool has_common = has_points && response.has_common();
   out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,")
-      .text("residual_re,residual_im\n");
-  if (results.source != Source::kPoints) {
+      .text("residual_re,residual_im")
+      .text(has_common ? ",u_common\n" : "\n");
+  if (!has_points) {
     return;
   }
   const Accelerometer& model = results.device.estimate;
-  const Span<const ResponsePoint> points = results.fit.response().points();
+  const Span<const ResponsePoint> points = response.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ResponsePoint& point = points[i];
     const Complex residual = results.fit.normalised_residual(i);
-    const double fitted[] = {amplitude(model, point.frequency_hz),
-                             phase_rad(model, point.frequency_hz) * kDegreesPerRadian, residual.re,
-                             residual.im};
-    write_point(point, results.fit.response().common()[i], out);
-    out.text(",");
-    write_row(fitted, out);
+    write_point(point, response.common()[i], out);
+    out.text(",").exact(amplitude(model, point.frequency_hz));
+    out.text(",").exact(phase_rad(model, point.frequency_hz) * kDegreesPerRadian);
+    out.text(",").exact(residual.re).text(",").exact(residual.im);
+    if (has_common) {
+      write_common(point, response.common()[i], out);
+    }
+    out.line();
   }
+  write_shared(response.shared(), out);
 }
 
 void write_measured_points_csv(const Measurement& measurement, TextWriter& out) noexcept {
-  out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n");
+  const double common_u = measurement.sweep.common.total;
+  out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg");
+  out.text(common_u > 0.0 ? ",u_common\n" : "\n");
   for (const SweepPoint& point : measurement.sweep.points()) {
-    write_point(point.point, measurement.sweep.common.total, out);
+    write_point(point.point, common_u, out);
+    if (common_u > 0.0) {
+      write_common(point.point, common_u, out);
+    }
     out.line();
   }
+  write_shared(measurement.sweep.shared, out);
 }
 
 void write_impulse_response_csv(const EvaluationResults& results, TextWriter& out) noexcept {

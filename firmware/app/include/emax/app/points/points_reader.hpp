@@ -20,8 +20,8 @@ struct PointsError {
 /// Reads the columns of the paper's Table 1, f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg, with
 /// expanded uncertainties (k = 2): the points hold radians and standard uncertainties.
 ///
-/// A table whose header is that of frequency_response.csv has nine columns; the last four, which
-/// are the fit's, are not looked at.
+/// A table whose header is that of frequency_response.csv has up to ten columns; those behind the
+/// fifth, which are the fit's and what the points have in common, are not looked at.
 ///
 /// Numbers are separated by commas and have a point as decimal sign. Allowed are one header line
 /// before the numbers (it begins with a letter and has five names, or those nine), empty lines,
