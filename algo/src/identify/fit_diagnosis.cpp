@@ -16,12 +16,22 @@ constexpr int kCornersPerDecade = 16;
 constexpr int kDecades = 3;
 constexpr int kRefinements = 60;  // Of a golden section: 1e-12 of the bracket.
 
-enum class Fault : std::uint8_t { kDelay, kCoupling };
+// Below it the phases of radians taken for degrees are all within a turn of radians.
+constexpr double kTurnOfRadians_rad = kTwoPi * kRadiansPerDegree;
+constexpr double kNoSensorsDamping = 0.002;
+constexpr double kNoOnesPhase_rad = 0.025 * kRadiansPerDegree;  // A standard uncertainty.
+
+enum class Fault : std::uint8_t { kDelay, kCoupling, kRadians };
 
 // What a fault of size `value` has added is taken out of one point.
 ResponsePoint without(Fault fault, double value, ResponsePoint point) noexcept {
   if (fault == Fault::kDelay) {
     point.phase_rad += kTwoPi * point.frequency_hz * value;
+    return point;
+  }
+  if (fault == Fault::kRadians) {
+    point.phase_rad *= kDegreesPerRadian;
+    point.u_phase_rad *= kDegreesPerRadian;
     return point;
   }
   const double ratio = value / point.frequency_hz;
@@ -51,6 +61,9 @@ class Trials final {
                                                      result.mu[0] > 0.0 && result.mu[2] > 0.0);
     return is_device && result.dof > 0 ? result.chi2 / result.dof : kNoDevice;
   }
+
+  /// The damping of the fit made last.
+  double damping() const noexcept { return workspace_.fit.result().model.damping; }
 
   /// The best value in [low, high] by a golden section.
   double refine(Fault fault, double low, double high) noexcept {
@@ -121,6 +134,52 @@ bool has_negative_damping(const WlspFit& fit) noexcept {
          fit.model.damping + 2.0 * fit.u_damping < 0.0;
 }
 
+bool may_be_radians(const FrequencyResponse& response) noexcept {
+  for (const ResponsePoint& point : response.points()) {
+    const ResponsePoint turned = without(Fault::kRadians, 1.0, point);
+    if (abs(point.phase_rad) > kTurnOfRadians_rad || !is_phase_known(turned)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool has_tiny_phases(const Wlsp& fit) noexcept {
+  for (const ResponsePoint& point : fit.response().points()) {
+    if (point.u_phase_rad > kNoOnesPhase_rad) {
+      return false;
+    }
+  }
+  return fit.result().status == Status::kOk && fit.result().model.damping < kNoSensorsDamping;
+}
+
+// What explains the points: the cause that leaves least, if that is little.
+void find_cause(const Wlsp& fit, Trials& trials, FitDiagnosis& diagnosis) noexcept {
+  constexpr double kNever = 1e300;
+  const double delay_s = trials.best_delay();
+  const double with_delay = trials.reduced(Fault::kDelay, delay_s);
+  const double corner_hz = trials.best_corner();
+  const double with_corner = trials.reduced(Fault::kCoupling, corner_hz);
+  const bool is_candidate = may_be_radians(fit.response());
+  const double with_radians = is_candidate ? trials.reduced(Fault::kRadians, 1.0) : kNever;
+  diagnosis.damping = is_candidate ? trials.damping() : 0.0;
+  const double of_chain = with_delay < with_corner ? with_delay : with_corner;
+  const double best = with_radians < of_chain ? with_radians : of_chain;
+  if (!(best < kConvincing * diagnosis.reduced_before || best < kGood)) {
+    return;
+  }
+  diagnosis.reduced_after = best;
+  if (with_radians < of_chain) {
+    diagnosis.cause = FitCause::kRadians;
+  } else if (with_delay < with_corner) {
+    diagnosis.cause = FitCause::kDelay;
+    diagnosis.delay_s = delay_s;
+  } else {
+    diagnosis.cause = FitCause::kCoupling;
+    diagnosis.corner_hz = corner_hz;
+  }
+}
+
 }  // namespace
 
 FitDiagnosis diagnose(const Wlsp& fit, DiagnosisWorkspace& workspace) noexcept {
@@ -132,30 +191,19 @@ FitDiagnosis diagnose(const Wlsp& fit, DiagnosisWorkspace& workspace) noexcept {
   }
   diagnosis.reduced_before = result.chi2 / result.dof;
   const bool is_suspicious = diagnosis.reduced_before > kSuspicious;
-  if (!is_suspicious && has_negative_damping(result)) {
+  Trials trials(fit, workspace);
+  if (is_suspicious) {
+    find_cause(fit, trials, diagnosis);
+  }
+  if (diagnosis.cause == FitCause::kNone && has_negative_damping(result)) {
     diagnosis.cause = FitCause::kPhaseSign;
     diagnosis.reduced_after = diagnosis.reduced_before;
-    return diagnosis;
   }
-  if (!is_suspicious) {
-    return diagnosis;
-  }
-  Trials trials(fit, workspace);
-  const double delay_s = trials.best_delay();
-  const double with_delay = trials.reduced(Fault::kDelay, delay_s);
-  const double corner_hz = trials.best_corner();
-  const double with_corner = trials.reduced(Fault::kCoupling, corner_hz);
-  const double best = with_delay < with_corner ? with_delay : with_corner;
-  if (!(best < kConvincing * diagnosis.reduced_before || best < kGood)) {
-    return diagnosis;
-  }
-  diagnosis.reduced_after = best;
-  if (with_delay < with_corner) {
-    diagnosis.cause = FitCause::kDelay;
-    diagnosis.delay_s = delay_s;
-  } else {
-    diagnosis.cause = FitCause::kCoupling;
-    diagnosis.corner_hz = corner_hz;
+  if (!is_suspicious && has_tiny_phases(fit) && may_be_radians(response)) {
+    const double after = trials.reduced(Fault::kRadians, 1.0);
+    diagnosis.cause = after < kSuspicious ? FitCause::kMayBeRadians : diagnosis.cause;
+    diagnosis.reduced_after = after;
+    diagnosis.damping = trials.damping();
   }
   return diagnosis;
 }

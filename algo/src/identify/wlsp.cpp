@@ -5,6 +5,7 @@
 #include "emax/base/distributions.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
+#include "emax/identify/fit_judgement.hpp"
 #include "emax/identify/magnitude_fit.hpp"
 
 namespace emax {
@@ -83,10 +84,31 @@ Status Wlsp::fit(const FrequencyResponse& response) noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  if (response_.known_phases() < response_.size()) {
-    return solve_without_phases();
+  const bool knows_all = response_.known_phases() == response_.size();
+  const Status solved = !knows_all                       ? solve_without_phases()
+                        : factor_points() == Status::kOk ? solve()
+                                                         : reject(Status::kNotIdentifiable);
+  return may_hold_given() ? hold_given() : solved;
+}
+
+// The damping given is among those that the points leave open.
+bool Wlsp::may_hold_given() const noexcept {
+  if (!(given_damping_ >= kMinDamping) || held_damping_ > 0.0) {
+    return false;
   }
-  return factor_points() == Status::kOk ? solve() : reject(Status::kNotIdentifiable);
+  const FitJudgement judgement = judge(fit_);
+  return judgement.determined == Determined::kAllButDamping &&
+         given_damping_ <= judgement.damping_high;
+}
+
+Status Wlsp::hold_given() noexcept {
+  held_damping_ = given_damping_;
+  is_damping_given_ = true;
+  double scaled[3] = {scaled_[0], held_damping_ * sqrt(scaled_[0] * scaled_[2]), scaled_[2]};
+  if (iterate_phases(scaled) == Status::kOk) {
+    finish_without_phases();
+  }
+  return fit_.status;
 }
 
 Status Wlsp::factor_points() noexcept {

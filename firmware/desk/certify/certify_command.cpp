@@ -35,6 +35,7 @@
 #include "desk/files/rounding.hpp"
 #include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
+#include "desk/report/failure_words.hpp"
 #include "desk/report/fit_causes.hpp"
 
 namespace emax::desk {
@@ -166,20 +167,23 @@ Problem judge_fit(const ReportOptions& options, app::Evaluation& evaluation,
 }
 
 // Finds the device and the signal with the largest energy known.
-Problem find_energy(const ReportOptions& options, app::EvaluationResults& results) {
+Problem find_energy(const ReportOptions& options, ImportedPoints& imported,
+                    app::EvaluationResults& results) {
   static app::EvaluationWorkspace workspace;
   app::Evaluation evaluation(results, workspace);
   Status status = Status::kOk;
   if (options.points_path.empty()) {
     status = evaluation.start_from_model(options.device, options.settings, app::Goal::kEnergy);
   } else {
-    static ImportedPoints imported;
     if (Problem problem = read_points(options.points_path, options.import,
                                       options.reference_uncertainty_percent, imported)) {
       return problem;
     }
     evaluation.give_damping(options.damping);
     status = evaluation.start_from_points(imported.points, options.settings, app::Goal::kEnergy);
+    if (Problem problem = check_given_damping(results, options)) {
+      return problem;
+    }
   }
   const bool has_points = !options.points_path.empty();
   ConsoleProgress progress;
@@ -194,13 +198,7 @@ Problem find_energy(const ReportOptions& options, app::EvaluationResults& result
   if (status == Status::kOk) {
     return has_points ? judge_fit(options, evaluation, results) : Problem{};
   }
-  StringSink sentence;
-  app::TextWriter writer(sentence);
-  write_failure(results, writer);
-  const bool is_search = status == Status::kTooManyCells || status == Status::kTooManySwitches;
-  const std::string source =
-      options.points_path.empty() ? "--model" : name_of_input(options.points_path);
-  return bad_input((is_search ? "--time" : source) + ": " + sentence.text());
+  return describe_failure(results, options, imported.names_phase_unit);
 }
 
 // The bound of `emax report`, for a = 1; infinity if there is none.
@@ -332,6 +330,7 @@ Problem prove(EnergyCertificate& certificate, double energy, const CertifyOption
 
 struct CertifyResult {
   const app::EvaluationResults* evaluation = nullptr;
+  std::string cause;  ///< Why its points do not fit, if anybody knows.
   ProvenEnergy proven;
   double quick_bound_v2s = 0.0;  // That of emax report.
   double seconds = 0.0;
@@ -383,16 +382,15 @@ void write_warning(const std::string& words, app::TextWriter& out) {
 }
 
 // What a report on these points warns of: the device that the proof is about may be another one.
-void write_warnings(const app::EvaluationResults& evaluation, app::TextWriter& out) {
+void write_warnings(const CertifyResult& result, app::TextWriter& out) {
+  const app::EvaluationResults& evaluation = *result.evaluation;
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
       write_warning(words_of(warning), out);
     }
   }
-  const std::string cause =
-      evaluation.source == app::Source::kPoints ? cause_of(evaluation.fit) : "";
-  if (!cause.empty()) {
-    write_warning(cause, out);
+  if (!result.cause.empty()) {
+    write_warning(result.cause, out);
   }
   if (evaluation.has_cut_range) {
     out.text("Range of E  ").scientific(evaluation.cut_low_v2s, 3).text(" to ");
@@ -411,7 +409,7 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
   out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
   out.line();
-  write_warnings(*result.evaluation, out);
+  write_warnings(result, out);
   out.text("Filter      Butterworth, order ")
       .integer(static_cast<std::uint64_t>(filter.relative_degree));
   out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
@@ -449,9 +447,10 @@ Problem run_certify(Span<const std::string_view> arguments) {
   // Only the estimate's energy is wanted.
   options.report.settings.trend_count = 0;
   static app::EvaluationResults evaluation;
+  static ImportedPoints imported;
   SingleFile file(options.out_path);
   Problem problem = file.open();
-  problem = problem ? problem : find_energy(options.report, evaluation);
+  problem = problem ? problem : find_energy(options.report, imported, evaluation);
   if (problem) {
     return problem;
   }
@@ -473,6 +472,9 @@ Problem run_certify(Span<const std::string_view> arguments) {
   }
   CertifyResult result;
   result.evaluation = &evaluation;
+  if (evaluation.source == app::Source::kPoints) {
+    result.cause = cause_of(evaluation.fit, imported.names_phase_unit);
+  }
   result.proven.model = &model;
   result.proven.certificate = &work.certificate();
   result.proven.signal = &evaluation.maximum.signal;

@@ -272,8 +272,8 @@ std::vector<Option> table_options(ReportOptions& options) {
                   "the sensor is turned round",
                   options.import.is_inverted)
       .add("damping", "BETA", "", "a number from 0.0001 to below 1",
-           "damping, where the table has magnitudes only and does\n"
-           "not determine it",
+           "damping, where the points of the table do not\n"
+           "determine it",
            take_damping);
   return builder.options();
 }

@@ -129,6 +129,10 @@ ImportError import_points(std::string_view text, const ImportOptions& options,
   if (ImportError error = add_points(merged, options, imported)) {
     return error;
   }
+  const Conversion& phase = conversions.phase();
+  imported.names_phase_unit =
+      phase.is_there &&
+      (!table.columns[phase.column].unit_spelling.empty() || options.phase_unit.is_given());
   imported.states_common = conversions.u_common().is_there;
   ImportError error = imported.states_common ? set_common(merged, imported) : ImportError{};
   error = error ? error : set_shared(table, imported);

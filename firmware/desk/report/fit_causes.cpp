@@ -30,17 +30,23 @@ std::string words_of_delay(const FitDiagnosis& diagnosis) {
          number(diagnosis.delay_s, 4) + ".";
 }
 
+std::string words_of_sign(const FitDiagnosis& diagnosis) {
+  constexpr double kGood = 3.0;
+  return std::string(diagnosis.reduced_before < kGood ? "All else fits, but the" : "The") +
+         " phases lead: a lag must be negative, so change their sign (or name the column a lag), "
+         "or take out what makes the device's channel early.";
+}
+
 }  // namespace
 
-std::string cause_of(const Wlsp& fit) {
+std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
   const auto workspace = std::make_unique<DiagnosisWorkspace>();
   const FitDiagnosis diagnosis = diagnose(fit, *workspace);
   switch (diagnosis.cause) {
     case FitCause::kNone:
       return "";
     case FitCause::kPhaseSign:
-      return "All else fits, but the phases lead: a lag must be negative, so change their sign (or "
-             "name the column a lag), or take out what makes the device's channel early.";
+      return words_of_sign(diagnosis);
     case FitCause::kDelay:
       return words_of_delay(diagnosis);
     case FitCause::kCoupling:
@@ -48,6 +54,16 @@ std::string cause_of(const Wlsp& fit) {
              " Hz " + change_of(diagnosis) +
              ": leave the lowest frequencies out, or couple the device's channel as the "
              "reference's.";
+    case FitCause::kRadians:
+      return "Taking the phases for radians and not for degrees " + change_of(diagnosis) +
+             ": name their unit in the header, or by --input-units rad.";
+    case FitCause::kMayBeRadians:
+      return is_phase_unit_named
+                 ? ""
+                 : "No unit of the phase is named, and degrees were taken. As radians they fit as "
+                   "well, with beta = " +
+                       number(diagnosis.damping, 3) +
+                       ": name their unit in the header, or by --input-units.";
   }
   return "";
 }

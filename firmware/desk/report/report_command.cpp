@@ -2,7 +2,6 @@
 #include "desk/report/report_command.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -23,6 +22,7 @@
 #include "desk/files/report_files.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
+#include "desk/report/failure_words.hpp"
 #include "desk/report/fit_causes.hpp"
 #include "desk/trials/thread_helper.hpp"
 
@@ -31,59 +31,6 @@ namespace emax::desk {
 namespace {
 
 constexpr std::uint32_t kMaxStoredTrials = 10'000'000;
-
-// Sentences of the library, with what they add in brackets, as the middle of a line: small letters
-// at the start, no full stops.
-std::string in_line(const std::string& text) {
-  std::string line;
-  bool starts = true;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    const bool ends = i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == ')';
-    if (c == '.' && ends) {
-      continue;
-    }
-    line += starts ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
-    starts = text.compare(i, 5, "(The ") == 0;
-  }
-  return line;
-}
-
-// What has to be changed: an option, or the device.
-std::string culprit(const app::Failure& failure, const ReportOptions& options) {
-  const bool is_search =
-      failure.status == Status::kTooManyCells || failure.status == Status::kTooManySwitches;
-  if (is_search && failure.stage == app::Stage::kTrend) {
-    return "--trend";
-  }
-  if (is_search) {
-    return "--time";
-  }
-  if (options.measures()) {
-    return "measurement";
-  }
-  return options.points_path.empty() ? "--model" : name_of_input(options.points_path);
-}
-
-Problem describe(const app::EvaluationResults& evaluation, const ReportOptions& options) {
-  const app::Failure& failure = evaluation.failure;
-  const bool is_inverted = failure.status == Status::kInvertedPolarity;
-  StringSink sentence;
-  app::TextWriter writer(sentence);
-  write_failure(evaluation, writer);
-  const std::string who = culprit(failure, options);
-  std::string line =
-      who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
-  if (is_inverted && !options.points_path.empty()) {
-    line += "; --invert adds 180 degrees to every phase";
-  }
-  if (failure.stage == app::Stage::kFitDraws) {
-    const std::string cause = cause_of(evaluation.fit);
-    line += cause.empty() ? "" : "; " + in_line(cause);
-  }
-  // What the bench gave is no input of the user's.
-  return who == "measurement" ? fault(line) : bad_input(line);
-}
 
 // What a report is written from.
 struct Results {
@@ -97,7 +44,7 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
   if (!options.instrument.empty()) {
     const Problem problem = job.measure_with_instrument(options, progress);
     const bool is_refused = !problem && job.sequencer().evaluation().status() != Status::kOk;
-    return is_refused ? describe(job.sequencer().evaluation(), options) : problem;
+    return is_refused ? describe_failure(job.sequencer().evaluation(), options, true) : problem;
   }
   if (options.measures()) {
     return job.start(options);
@@ -113,9 +60,12 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
     sequencer.take(imported.points);
     sequencer.give_damping(options.damping);
   }
-  return sequencer.evaluate(options.settings, app::Goal::kReport)
-             ? describe(sequencer.evaluation(), options)
-             : Problem{};
+  const bool is_refused =
+      static_cast<bool>(sequencer.evaluate(options.settings, app::Goal::kReport));
+  const Problem problem = check_given_damping(sequencer.evaluation(), options);
+  return problem || !is_refused
+             ? problem
+             : describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
 }
 
 // Everything from the measurement to the results, with room for the trials' values, so that each is
@@ -142,7 +92,7 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {
-    problem = describe(sequencer.evaluation(), options);
+    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
   }
   return problem;
 }
@@ -193,7 +143,8 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
 }
 
 bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
-  return !options.points_path.empty() && evaluation.stage == app::Stage::kFailed &&
+  return !options.points_path.empty() && !(options.damping > 0.0) &&
+         evaluation.stage == app::Stage::kFailed &&
          evaluation.judgement.determined == Determined::kSensitivity;
 }
 
@@ -231,7 +182,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
-  const std::string cause = has_table ? cause_of(evaluation.fit) : "";
+  const std::string cause = has_table ? cause_of(evaluation.fit, imported.names_phase_unit) : "";
   const app::Measurement measurement = bench.measurement();
   const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                       options.measures() ? &measurement : nullptr,

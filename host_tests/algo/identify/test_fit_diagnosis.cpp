@@ -83,6 +83,50 @@ TEST(FitDiagnosis, SignOfThePhase) {
   EXPECT_EQ(found.cause, FitCause::kPhaseSign);
 }
 
+// 30 points of a device, their phases multiplied by `scale`, with errors of `scatter` times what is
+// stated.
+FitDiagnosis diagnosis_of_scaled(double f0_hz, double damping, double scale, double scatter) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0.0, scatter);
+  FrequencyResponse response;
+  for (int i = 0; i < 30; ++i) {
+    ResponsePoint p;
+    p.frequency_hz = 20.0 * std::pow(300.0, i / 29.0);
+    const std::complex<double> r = kJ * (p.frequency_hz / f0_hz);
+    const std::complex<double> k = 1.037 / (r * r + 2.0 * damping * r + 1.0);
+    p.u_amplitude = 0.005 * std::abs(k);
+    p.u_phase_rad = 0.1 * kDegree * std::abs(scale);
+    p.amplitude = std::abs(k) + p.u_amplitude * normal(random);
+    p.phase_rad = std::arg(k) * scale + p.u_phase_rad * normal(random);
+    EXPECT_EQ(response.add(p), Status::kOk);
+  }
+  Wlsp fit;
+  (void)fit.fit(response);
+  const auto workspace = std::make_unique<DiagnosisWorkspace>();
+  return diagnose(fit, *workspace);
+}
+
+TEST(FitDiagnosis, RadiansTakenForDegrees) {
+  const FitDiagnosis found = diagnosis_of_scaled(4073.0, 0.3182, kDegree, 1.0);
+  EXPECT_EQ(found.cause, FitCause::kRadians);
+  EXPECT_NEAR(found.damping, 0.3182, 0.003);
+  EXPECT_LT(found.reduced_after, 1.5);
+  // Far below the resonance both fit; then the damping alone tells.
+  const FitDiagnosis far = diagnosis_of_scaled(40000.0, 0.03, kDegree, 1.0);
+  EXPECT_EQ(far.cause, FitCause::kMayBeRadians);
+  EXPECT_NEAR(far.damping, 0.03, 0.005);
+  EXPECT_EQ(diagnosis_of_scaled(40000.0, 0.03, 1.0, 1.0).cause, FitCause::kNone);
+}
+
+// The scatter may be larger than stated; the sign is wrong all the same.
+TEST(FitDiagnosis, SignOfThePhaseOfPointsThatScatter) {
+  for (const double scatter : {1.0, 3.0, 6.0}) {
+    EXPECT_EQ(diagnosis_of_scaled(4073.0, 0.3182, -1.0, scatter).cause, FitCause::kPhaseSign)
+        << scatter;
+    EXPECT_NE(diagnosis_of_scaled(4073.0, 0.3182, 1.0, scatter).cause, FitCause::kPhaseSign);
+  }
+}
+
 TEST(FitDiagnosis, ASecondResonanceHasNoneOfTheseNames) {
   const FitDiagnosis found = diagnosis_of([](double f, std::complex<double> k) {
     const std::complex<double> r = kJ * (f / 900.0);

@@ -97,10 +97,11 @@ class Wlsp {
   /// is not positive definite.
   Status fit(const FrequencyResponse& response, Span<const ComplexCovariance> covariances) noexcept;
 
-  /// The damping to hold where no phase is known and the magnitudes do not determine it.
+  /// The damping to hold where the points do not determine it: where no phase is known, and where
+  /// it is among those that `judge()` says are left open.
   ///
   /// @param[in] damping kMinDamping to below 1; everything else is as if none was given. Stays
-  ///                    until the next call.
+  ///                    until the next call. `is_damping_given` tells whether it was held.
   void give_damping(double damping) noexcept { given_damping_ = damping; }
 
   /// @returns That of the last fit; all zero before the first.
@@ -129,6 +130,8 @@ class Wlsp {
   Status load(const FrequencyResponse& response) noexcept;
   Status solve() noexcept;
   Status solve_without_phases() noexcept;
+  bool may_hold_given() const noexcept;
+  Status hold_given() noexcept;
   Status begin_without_phases(double (&scaled)[3]) noexcept;
   Status iterate_phases(double (&scaled)[3]) noexcept;
   void take_phases_from(const double (&scaled)[3]) noexcept;

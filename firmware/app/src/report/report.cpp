@@ -680,9 +680,13 @@ void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out)
         "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
         "  and that the table's uncertainties are expanded ones (k = 2).\n");
     if (cause != nullptr) {
-      write_cause(cause, out);
+      write_cause("", cause, out);
     }
     return;
+  }
+  if (cause != nullptr) {
+    out.line();
+    write_cause("Note: ", cause, out);
   }
   const double low = reduced_chi_square_quantile(fit.dof, -kQuantile99);
   if (reduced < low) {

@@ -30,15 +30,16 @@ void write_open_damping(const EvaluationResults& results, ReportWriter& out) noe
 }
 
 void write_magnitudes_only(const WlspFit& fit, std::size_t points, ReportWriter& out) noexcept {
-  if (fit.unknown_phases == 0) {
-    return;
+  if (fit.unknown_phases > 0) {
+    out.line();
+    out.part(ReportPart::kNote).text("  Note: the phase is unknown at ");
+    out.integer(fit.unknown_phases).text(" of ").integer(points);
+    out.text(" points; there only the magnitude is fitted.\n");
   }
-  out.line();
-  out.part(ReportPart::kNote).text("  Note: the phase is unknown at ");
-  out.integer(fit.unknown_phases).text(" of ").integer(points);
-  out.text(" points; there only the magnitude is fitted.\n");
   if (fit.is_damping_given) {
-    out.text("  The magnitudes do not determine beta; it is held at the value given.\n");
+    out.line();
+    out.part(ReportPart::kNote);
+    out.text("  Note: the points do not determine beta; it is held at the value given.\n");
   }
 }
 
@@ -72,10 +73,10 @@ void write_low_frequency(const EvaluationResults& results, ReportWriter& out) no
 
 }  // namespace
 
-void write_cause(const char* cause, ReportWriter& out) noexcept {
+void write_cause(const char* start, const char* cause, ReportWriter& out) noexcept {
   constexpr std::size_t kMaxLine = 100;
   constexpr std::size_t kIndent = 2;
-  out.part(ReportPart::kText);
+  out.part(*start == '\0' ? ReportPart::kText : ReportPart::kNote);
   std::size_t column = 0;
   while (*cause != '\0') {
     std::size_t length = 0;
@@ -83,7 +84,7 @@ void write_cause(const char* cause, ReportWriter& out) noexcept {
       ++length;
     }
     if (column == 0 || column + 1 + length > kMaxLine) {
-      out.text(column == 0 ? "  " : "\n  ");
+      out.text(column == 0 ? "  " : "\n  ").text(column == 0 ? start : "");
       column = kIndent;
     } else {
       out.text(" ");

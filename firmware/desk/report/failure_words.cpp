@@ -1,0 +1,97 @@
+// Why an evaluation has led to nothing, in the line that the program ends with.
+#include "desk/report/failure_words.hpp"
+
+#include <cctype>
+#include <cstddef>
+
+#include "emax/app/base/text_writer.hpp"
+#include "emax/app/report/report.hpp"
+#include "emax/identify/fit_judgement.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/files/text_file.hpp"
+#include "desk/report/fit_causes.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+// Sentences of the library, with what they add in brackets, as the middle of a line: small letters
+// at the start, no full stops.
+std::string in_line(const std::string& text) {
+  std::string line;
+  bool starts = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool ends = i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == ')';
+    if (c == '.' && ends) {
+      continue;
+    }
+    line += starts ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
+    starts = text.compare(i, 5, "(The ") == 0;
+  }
+  return line;
+}
+
+// What has to be changed: an option, or the device.
+std::string culprit(const app::Failure& failure, const ReportOptions& options) {
+  const bool is_search =
+      failure.status == Status::kTooManyCells || failure.status == Status::kTooManySwitches;
+  if (is_search && failure.stage == app::Stage::kTrend) {
+    return "--trend";
+  }
+  if (is_search) {
+    return "--time";
+  }
+  if (options.measures()) {
+    return "measurement";
+  }
+  return options.points_path.empty() ? "--model" : name_of_input(options.points_path);
+}
+
+}  // namespace
+
+Problem describe_failure(const app::EvaluationResults& evaluation, const ReportOptions& options,
+                         bool is_phase_unit_named) {
+  const app::Failure& failure = evaluation.failure;
+  const bool is_inverted = failure.status == Status::kInvertedPolarity;
+  StringSink sentence;
+  app::TextWriter writer(sentence);
+  write_failure(evaluation, writer);
+  const std::string who = culprit(failure, options);
+  std::string line =
+      who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
+  if (is_inverted && !options.points_path.empty()) {
+    line += "; --invert adds 180 degrees to every phase";
+  }
+  if (failure.stage == app::Stage::kFitDraws) {
+    const std::string cause = cause_of(evaluation.fit, is_phase_unit_named);
+    line += cause.empty() ? "" : "; " + in_line(cause);
+  }
+  // What the bench gave is no input of the user's.
+  return who == "measurement" ? fault(line) : bad_input(line);
+}
+
+Problem check_given_damping(const app::EvaluationResults& evaluation,
+                            const ReportOptions& options) {
+  const WlspFit& fit = evaluation.fit.result();
+  if (!(options.damping > 0.0) || fit.is_damping_given) {
+    return {};
+  }
+  if (evaluation.judgement.determined == Determined::kSensitivity) {
+    return bad_input(
+        "--damping: the points determine the sensitivity alone, and without f0 a damping is of no "
+        "use; expected points nearer to the resonance, or no --damping");
+  }
+  if (evaluation.judgement.determined == Determined::kNothing) {
+    return {};
+  }
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.text("--damping: the points say beta = ").general(fit.model.damping, 4).text(" with U = ");
+  out.general(2.0 * fit.u_damping, 3);
+  out.text(" (k = 2); expected a damping that they leave open, or no --damping");
+  return bad_input(sink.text());
+}
+
+}  // namespace emax::desk
