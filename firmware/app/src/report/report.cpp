@@ -712,7 +712,7 @@ void write_report(const EvaluationResults& results, const ReportContext& context
                   ReportMarkup* markup) noexcept {
   ReportWriter writer(out, context.in_g, markup);
   write_title(context, writer);
-  write_figures(results, writer);
+  write_figures(results, context, writer);
   write_input(results, context, writer);
   if (context.measurement != nullptr) {
     write_measurement_section(*context.measurement, writer);

@@ -23,8 +23,46 @@ double power_of_ten(int exponent) noexcept {
   return power;
 }
 
+// Warnings that concern the figures, and not only the paper's trials.
+constexpr Warning kMarking[] = {
+    Warning::kFit,           Warning::kOpenDamping, Warning::kDisagreement, Warning::kLowFrequency,
+    Warning::kShortTime,     Warning::kGuard,       Warning::kCrowded,      Warning::kRedrawn,
+    Warning::kNoUncertainty, Warning::kMeasurement};
+
+bool is_marked(const EvaluationResults& results, const ReportContext& context) noexcept {
+  bool any = false;
+  for (const Warning warning : kMarking) {
+    any = any || holds(warning, results, context);
+  }
+  return any;
+}
+
+void write_mark(const EvaluationResults& results, const ReportContext& context,
+                ReportWriter& out) noexcept {
+  out.text("  * There is a warning below, on: ");
+  const char* last = "";
+  for (const Warning warning : kMarking) {
+    if (holds(warning, results, context) && about(warning) != last) {
+      out.text(*last == '\0' ? "" : ", ").text(about(warning));
+      last = about(warning);
+    }
+  }
+  out.text(".\n");
+  if (!results.is_damping_open()) {
+    return;
+  }
+  out.text("  The points leave beta open: these figures are at ");
+  out.general(results.judgement.device.damping, 3);
+  if (results.has_cut_range && results.cut_low_v2s > 0.0) {
+    out.text(";\n  the paper's is ").general(results.percent_of(results.cut_low_v2s), 4);
+    out.text(" to ").general(results.percent_of(results.cut_high_v2s), 4).text(" over the range");
+  }
+  out.text(".\n");
+}
+
 struct Row {
   const char* name;
+  bool is_marked;
   double percent;
   double expanded;  ///< U in percent; 0 if there is none.
   bool has_bound;
@@ -52,7 +90,7 @@ void write_row(const Row& row, ReportWriter& out) noexcept {
   const int decimals =
       has_u ? decimals_of(row.expanded, kDigitsOfU) : decimals_of(row.percent, kDigitsAlone);
   out.part(ReportPart::kLine);
-  out.cell(0).text("  ").left(kNameWidth).text(row.name);
+  out.cell(0).text("  ").left(kNameWidth - 2).text(row.name).text(row.is_marked ? " *" : "  ");
   write_cell(row.percent, decimals, kDigitsAlone, out);
   if (has_u) {
     write_cell(row.expanded, decimals, kDigitsOfU, out);
@@ -71,15 +109,19 @@ void write_row(const Row& row, ReportWriter& out) noexcept {
   out.line();
 }
 
-Row row_of(const char* name, const EvaluationResults& results,
+Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
            const FigureResults& figure) noexcept {
   const EnergyUncertainty& known = figure.uncertainty;
-  return {name, results.percent_of(figure.energy_v2s),
-          known.exists() ? kCoverageFactor * known.u_percent : 0.0, figure.has_bound,
+  return {name,
+          is_marked,
+          results.percent_of(figure.energy_v2s),
+          known.exists() ? kCoverageFactor * known.u_percent : 0.0,
+          figure.has_bound,
           results.percent_of(figure.bound_v2s)};
 }
 
-void write_papers_rows(const EvaluationResults& results, ReportWriter& out) noexcept {
+void write_papers_rows(const EvaluationResults& results, bool is_marked,
+                       ReportWriter& out) noexcept {
   const double energy = results.energy_v2s();
   const Criterion criterion = results.settings.criterion;
   if (energy < 0.0) {
@@ -90,14 +132,15 @@ void write_papers_rows(const EvaluationResults& results, ReportWriter& out) noex
     const bool has_u = known.exists() && is_finite(known.u_percent);
     const bool is_error = criterion == Criterion::kIntegralSquareError;
     write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
-               results.percent_of(energy), has_u ? kCoverageFactor * known.u_percent : 0.0,
-               results.has_bound, results.percent_of(results.bound_v2s)},
+               is_marked, results.percent_of(energy),
+               has_u ? kCoverageFactor * known.u_percent : 0.0, results.has_bound,
+               results.percent_of(results.bound_v2s)},
               out);
   }
   if (results.ideal.exists() &&
       (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {
-    write_row({"The same of an ideal sensor, K = S", results.percent_of(results.ideal.energy_v2s),
-               0.0, false, 0.0},
+    write_row({"The same of an ideal sensor, K = S", false,
+               results.percent_of(results.ideal.energy_v2s), 0.0, false, 0.0},
               out);
   }
 }
@@ -200,7 +243,9 @@ void write_switching_times(std::size_t switches, Span<const double> times_s,
   out.line();
 }
 
-void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept {
+void write_figures(const EvaluationResults& results, const ReportContext& context,
+                   ReportWriter& out) noexcept {
+  const bool marks = is_marked(results, context);
   out.heading(ReportSection::kFigures,
               "THE FIGURES (at the estimates; worst rms error of signals within +-a, in % of S a)");
   out.part(ReportPart::kTable);
@@ -210,12 +255,12 @@ void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept
   out.cell(kNumberWidth).text("U (k = 2)");
   out.cell(kNumberWidth).text("none exceeds").line();
   if (results.matched.exists()) {
-    write_row(row_of("In band, constant delay taken out", results, results.matched), out);
+    write_row(row_of("In band, constant delay taken out", marks, results, results.matched), out);
   }
   if (results.band.exists()) {
-    write_row(row_of("In band, with its delay", results, results.band), out);
+    write_row(row_of("In band, with its delay", marks, results, results.band), out);
   }
-  write_papers_rows(results, out);
+  write_papers_rows(results, marks, out);
   if (!results.band.exists()) {
     write_refusal("in band", results.band, out);
   } else if (!results.matched.exists()) {
@@ -233,6 +278,9 @@ void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept
   } else if (results.settings.criterion == Criterion::kEnergyDifference) {
     out.text(
         "  The energy difference is no error, but the sensor's energy less that of the filter.\n");
+  }
+  if (marks) {
+    write_mark(results, context, out);
   }
 }
 

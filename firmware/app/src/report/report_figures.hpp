@@ -18,7 +18,9 @@ double rounded_up(double value, int decimals) noexcept;
 double rounded_down(double value, int decimals) noexcept;
 
 /// The figures that tell sensors apart, in percent of S a.
-void write_figures(const EvaluationResults& results, ReportWriter& out) noexcept;
+/// A figure that a warning concerns has a star, and a line below the table says which.
+void write_figures(const EvaluationResults& results, const ReportContext& context,
+                   ReportWriter& out) noexcept;
 
 /// The in-band errors, in V^2 s and with their signals.
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept;

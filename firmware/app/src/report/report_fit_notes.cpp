@@ -23,10 +23,13 @@ void write_open_damping(const EvaluationResults& results, ReportWriter& out) noe
   out.general(judgement.damping_low, 3).text(" to ").general(judgement.damping_high, 3);
   out.text(".\n  ");
   write_span(results, judgement.device.natural_frequency_hz, out);
-  out.text(" The energy is given at the nearest damping that a device may have, ");
+  out.text(judgement.device.damping > kMinDamping
+               ? " The energy is given at the estimate, "
+               : " The energy is given at the least that a device may have, ");
   out.general(judgement.device.damping, 3);
   out.text(
-      ",\n  and for the range. Measure nearer to the resonance, or take beta from its maker.\n");
+      ",\n  and for the range. Measure nearer to the resonance, or give the beta that its maker "
+      "states.\n");
 }
 
 void write_magnitudes_only(const WlspFit& fit, std::size_t points, ReportWriter& out) noexcept {
