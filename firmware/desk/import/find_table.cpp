@@ -128,9 +128,22 @@ class TableFinder final {
         table_.first_row = before_[index];
         return;
       }
-      names = join_names(names, below);
-      table_.columns = read_header(names).columns;
+      take_more_names(names, below);
       table_.header_lines.push_back(before_[index]);
+    }
+  }
+
+  // Columns keep their names where units alone are added, and where they are not used.
+  void take_more_names(std::vector<std::string>& names, const std::vector<std::string>& below) {
+    const std::vector<Column> before = table_.columns;
+    names = join_names(names, below);
+    table_.columns = read_header(names).columns;
+    for (std::size_t i = 0; i < std::min(before.size(), table_.columns.size()); ++i) {
+      const bool is_unit =
+          i < below.size() && (find_unit(below[i]).is_given() || as_decibel(below[i]).is_decibel ||
+                               below[i].empty());
+      const bool keeps = is_unit || table_.columns[i].role == Role::kIgnored;
+      table_.columns[i].name = keeps ? before[i].name : table_.columns[i].name;
     }
   }
 
