@@ -66,6 +66,29 @@ class FilesOfInterruptedRuns(ProgramTest):
         self.assertGreater(self.run_through("EMAX_FAIL_AT", [0, 2, 3]), 8)
 
 
+    def test_killed_while_a_measurement_is_set_aside(self):
+        first, second, bad = self.table(1.0), self.table(1.1), self.write(["1,2,3"], "bad.csv")
+        for number in range(1, 200):
+            for path in (self.directory / "out").glob("frequency_response*"):
+                path.unlink()
+            self.succeed("report", "--points", first, *QUICK, "--out", "out")
+            (self.directory / "out/frequency_response.csv").write_text("measured")
+            old = self.content()
+            result = self.run_program("report", "--points", second, *QUICK, "--out", "out",
+                                      **shim(EMAX_KILL_AT=number))
+            self.run_program("report", "--points", bad, "--out", "out")
+            found = self.content()
+            if found != old:
+                self.assertEqual(sorted(found), ["frequency_response.1.csv", "report.txt", "results.json"], number)
+                self.assertEqual(found["frequency_response.1.csv"], b"measured")
+                self.assertNotEqual(found["results.json"], old["results.json"])
+            if result.returncode == 0:
+                self.assertNotEqual(found, old)
+                self.assertGreater(number, 8)
+                return
+        self.fail("the run never ended by itself")
+
+
 @unittest.skipIf(not SHIM, "no library to preload")
 class CertificateOfInterruptedRuns(ProgramTest):
     def prove(self, order, **options):
@@ -157,6 +180,28 @@ class FilesThatAreKept(ProgramTest):
         self.succeed("report", *MODEL, *QUICK, "--out", "out")
         self.assertFalse((self.directory / "out/frequency_response.csv").exists())
         self.assertEqual((self.directory / "out/frequency_response.1.csv").read_text(), points)
+
+    def test_points_of_s_alone_keep_those_of_an_earlier_measurement(self):
+        self.succeed("report", "--points", TABLES / "plain.csv", *QUICK, "--out", "out")
+        points = (self.directory / "out/frequency_response.csv").read_text()
+        self.succeed(*HANDHELD, "--out", "out")
+        self.assertEqual(self.files(), ["out", "out/frequency_response.1.csv", "out/report.txt", "out/results.json"])
+        self.assertEqual((self.directory / "out/frequency_response.1.csv").read_text(), points)
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can be somebody else")
+    def test_files_of_another_user_in_a_sticky_directory(self):
+        out = self.directory / "out"
+        out.mkdir()
+        self.directory.chmod(0o755)
+        out.chmod(0o1777)
+        (out / "report.txt").write_text("of another user")
+        nobody = 65534
+        before = self.files()
+        result = self.run_program(*HANDHELD, "--out", "out", preexec_fn=lambda: os.setuid(nobody))
+        self.assertEqual(result.returncode, 2)
+        self.assert_one_line(result.stderr, "out/report.txt: belongs to another user", "sticky")
+        self.assertEqual(self.files(), before)  # And no results.json beside the old report.
+        self.assertEqual((out / "report.txt").read_text(), "of another user")
 
     def test_a_measurement_is_printed_where_no_file_holds_it(self):
         (self.directory / "out").mkdir()

@@ -45,7 +45,26 @@ Problem bad_directory(const std::string& directory, const char* problem) {
 // Of hidden directories: of a run that works, and of one whose files are being moved.
 constexpr char kHidden[] = ".emax.";
 constexpr char kCommitted[] = ".emax-complete";
-constexpr char kDropped[] = ".dropped";  // In it: the names of files to remove.
+constexpr char kDropped[] = ".dropped";  // In it: the names of files to remove,
+constexpr char kAside[] = ".aside";      // and of those that get another name.
+
+// Where a directory is sticky, as /tmp is, files of others can neither be replaced nor removed.
+bool belongs_to_another(const std::string& directory, const std::string& path) noexcept {
+  struct stat of_directory = {};
+  struct stat of_file = {};
+  const bool are_known =
+      stat(directory.c_str(), &of_directory) == 0 && lstat(path.c_str(), &of_file) == 0;
+  const uid_t user = geteuid();
+  return are_known && (of_directory.st_mode & S_ISVTX) != 0 && user != 0 &&
+         of_directory.st_uid != user && of_file.st_uid != user;
+}
+
+bool are_same(const std::string& path, const std::string& other) noexcept {
+  struct stat status = {};
+  struct stat of_other = {};
+  return lstat(path.c_str(), &status) == 0 && lstat(other.c_str(), &of_other) == 0 &&
+         status.st_ino == of_other.st_ino && status.st_dev == of_other.st_dev;
+}
 
 // What is no regular file is not ours to replace.
 Problem check_replaceable(const std::string& path) {
@@ -64,6 +83,12 @@ bool is_complete_svg(const std::string& svg) {
   const std::size_t last = svg.find_last_not_of(" \n");
   return last != std::string::npos && last + 1 >= kEnd.size() &&
          svg.compare(last + 1 - kEnd.size(), kEnd.size(), kEnd) == 0;
+}
+
+Problem of_another(const std::string& path) {
+  return bad_input("--out: " + printable(path) +
+                   ": belongs to another user, and the directory is sticky; expected a directory "
+                   "of your own");
 }
 
 Problem describe(const GnuplotRun& run, const std::string& directory, const char* script) {
@@ -205,6 +230,23 @@ std::string OutputFiles::content_of(const char* name) const {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// What is to be done beside moving files, for whoever finishes it.
+Problem OutputFiles::write_list(const char* list_name, const std::vector<std::string>& names) {
+  std::FILE* const list = std::fopen(temporary_path_of(list_name).c_str(), "wbx");
+  if (list == nullptr) {
+    return cannot_write(directory_, errno);
+  }
+  for (const std::string& name : names) {
+    (void)std::fprintf(list, "%s\n", name.c_str());
+  }
+  const bool is_synced = std::fflush(list) == 0 && fsync(fileno(list)) == 0;
+  const int error = errno;
+  if (std::fclose(list) != 0 || !is_synced) {
+    return cannot_write(directory_, is_synced ? errno : error);
+  }
+  return {};
+}
+
 Problem OutputFiles::commit() {
   if (Problem problem = make_temporary_directory()) {
     return problem;
@@ -214,17 +256,17 @@ Problem OutputFiles::commit() {
       return problem;
     }
   }
-  std::FILE* const list = std::fopen(temporary_path_of(kDropped).c_str(), "wbx");
-  if (list == nullptr) {
-    return cannot_write(directory_, errno);
+  for (const std::vector<std::string>* names : {&written_, &dropped_, &set_aside_}) {
+    for (const std::string& name : *names) {
+      if (belongs_to_another(directory_, path_of(name))) {
+        return of_another(path_of(name));
+      }
+    }
   }
-  for (const std::string& name : dropped_) {
-    (void)std::fprintf(list, "%s\n", name.c_str());
-  }
-  const bool is_synced = std::fflush(list) == 0 && fsync(fileno(list)) == 0;
-  const int error = errno;
-  if (std::fclose(list) != 0 || !is_synced) {
-    return cannot_write(directory_, is_synced ? errno : error);
+  Problem problem = write_list(kDropped, dropped_);
+  problem = problem ? problem : write_list(kAside, set_aside_);
+  if (problem) {
+    return problem;
   }
   desk::DirectoryLock lock;
   if (!lock.take(directory_)) {
@@ -233,7 +275,6 @@ Problem OutputFiles::commit() {
   if (!finish_moves(path_of(kCommitted))) {
     return cannot_write(directory_, errno);
   }
-  move_aside();
   // From here on the run counts: whoever comes next finishes what is left of it.
   if (std::rename(temporary_directory_.c_str(), path_of(kCommitted).c_str()) != 0 || !lock.sync()) {
     return cannot_write(directory_, errno);
@@ -254,8 +295,14 @@ bool OutputFiles::finish_moves(const std::string& from) {
   if (!is_directory(from)) {
     return true;
   }
-  std::ifstream list(from + "/" + kDropped);
-  for (std::string name; std::getline(list, name);) {
+  std::ifstream aside(from + "/" + kAside);
+  for (std::string name; std::getline(aside, name);) {
+    if (name.find('/') == std::string::npos && name.find('.') != std::string::npos) {
+      move_aside(name);
+    }
+  }
+  std::ifstream dropped(from + "/" + kDropped);
+  for (std::string name; std::getline(dropped, name);) {
     if (name.find('/') == std::string::npos && !desk::is_irregular(path_of(name))) {
       std::remove(path_of(name).c_str());
     }
@@ -263,7 +310,7 @@ bool OutputFiles::finish_moves(const std::string& from) {
   for (const std::string& name : desk::names_in(from, "")) {
     std::string source = from;
     source += "/" + name;
-    if (name != kDropped && !desk::is_irregular(path_of(name)) &&
+    if (name != kDropped && name != kAside && !desk::is_irregular(path_of(name)) &&
         std::rename(source.c_str(), path_of(name).c_str()) != 0) {
       return false;
     }
@@ -272,21 +319,20 @@ bool OutputFiles::finish_moves(const std::string& from) {
   return true;
 }
 
-void OutputFiles::move_aside() const {
+void OutputFiles::move_aside(const std::string& name) const {
   constexpr int kMostNumbers = 10'000;
-  for (const std::string& name : set_aside_) {
-    const std::size_t dot = name.rfind('.');
-    for (int number = 1; number < kMostNumbers; ++number) {
-      const std::string other =
-          path_of(name.substr(0, dot) + "." + std::to_string(number) + name.substr(dot));
-      // link() never replaces: of two runs at once each gets a number of its own.
-      if (link(path_of(name).c_str(), other.c_str()) == 0) {
-        (void)unlink(path_of(name).c_str());
-        break;
-      }
-      if (errno != EEXIST) {
-        break;
-      }
+  const std::size_t dot = name.rfind('.');
+  for (int number = 1; number < kMostNumbers; ++number) {
+    const std::string other =
+        path_of(name.substr(0, dot) + "." + std::to_string(number) + name.substr(dot));
+    // link() never replaces: of two runs at once each gets a number of its own. One that was killed
+    // here has made the link already.
+    if (link(path_of(name).c_str(), other.c_str()) == 0 || are_same(path_of(name), other)) {
+      (void)unlink(path_of(name).c_str());
+      return;
+    }
+    if (access(path_of(name).c_str(), F_OK) != 0 || access(other.c_str(), F_OK) != 0) {
+      return;
     }
   }
 }

@@ -85,7 +85,8 @@ class OutputFiles final {
   void keep(const std::string& name);
   void clear_leftovers();
   bool finish_moves(const std::string& from);
-  void move_aside() const;
+  Problem write_list(const char* list_name, const std::vector<std::string>& names);
+  void move_aside(const std::string& name) const;
 
   std::string directory_;
   std::string temporary_directory_;   // Empty before the first file.

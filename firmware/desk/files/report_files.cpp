@@ -147,7 +147,11 @@ Problem write_sensitivity_files(const app::EvaluationResults& results,
     write_sensitivity_json(results, context, out);
   });
   for (const Table& table : kTables) {
-    files.drop(table.name);
+    if (table.needs_points) {
+      files.set_aside(table.name);  // It may be the only record of a measurement.
+    } else {
+      files.drop(table.name);
+    }
   }
   files.drop("report.html");
   drop_pictures(files);
