@@ -117,6 +117,11 @@ class ConversionSetter final {
   ImportError set_uncertainty_unit(Conversion& u, const Conversion& of) const {
     const std::string& spelling = table_.columns[u.column].unit_spelling;
     const bool is_amplitude = &u != &by_.of(Role::kPhaseUncertainty);
+    if (spelling.empty() && is_amplitude && table_.columns[u.column].is_relative) {
+      u.unit = kPartOfOne;
+      u.is_relative = true;
+      return {};
+    }
     if (spelling.empty()) {
       u.unit = of.unit.is_given() ? of.unit : kDegree;
       u.is_decibel = of.is_decibel;

@@ -125,6 +125,9 @@ class TableFinder final {
     for (; index < before_.size(); ++index) {
       const std::vector<std::string> below = names_in(before_[index]);
       if (!may_be_names(below) || !continues_header(below)) {
+        if (is_statement(table_.text.lines[before_[index]])) {
+          continue;
+        }
         table_.first_row = before_[index];
         return;
       }
@@ -140,20 +143,41 @@ class TableFinder final {
     table_.columns = read_header(names).columns;
     for (std::size_t i = 0; i < std::min(before.size(), table_.columns.size()); ++i) {
       const bool is_unit =
-          i < below.size() && (find_unit(below[i]).is_given() || as_decibel(below[i]).is_decibel ||
-                               below[i].empty());
+          i < below.size() &&
+          (find_unit(below[i]).is_given() || as_decibel(below[i]).is_decibel || below[i].empty());
       const bool keeps = is_unit || table_.columns[i].role == Role::kIgnored;
       table_.columns[i].name = keeps ? before[i].name : table_.columns[i].name;
     }
   }
 
-  // Of the lines before the table, and of comments anywhere.
+  // Behind an empty line, words up to the end of the text are no rows.
+  void find_end() {
+    const std::vector<std::string>& lines = table_.text.lines;
+    table_.end_row = lines.size();
+    for (std::size_t i = lines.size(); i > table_.first_row; --i) {
+      const bool is_empty = lines[i - 1].find_first_not_of(" \t,;") == std::string::npos;
+      if (is_empty) {
+        table_.end_row = i;
+      } else if (!is_comment(lines[i - 1]) && !is_footer(lines[i - 1])) {
+        return;
+      }
+    }
+  }
+
+  bool is_footer(const std::string& line) const {
+    const std::string first = cells_of(line, table_.layout.separator).front();
+    return read_cell_with_unit(first, table_.layout.has_decimal_comma).cell.kind == CellKind::kText;
+  }
+
+  // Of the lines around the table, and of comments anywhere.
   ImportError take_statements() {
+    find_end();
     StatementReader reader;
     for (std::size_t i = 0; i < table_.text.lines.size(); ++i) {
       const bool is_header = std::find(table_.header_lines.begin(), table_.header_lines.end(), i) !=
                              table_.header_lines.end();
-      const bool is_around = i < table_.first_row || is_comment(table_.text.lines[i]);
+      const bool is_around =
+          i < table_.first_row || i >= table_.end_row || is_comment(table_.text.lines[i]);
       if (is_header || !is_around) {
         continue;
       }
@@ -226,8 +250,8 @@ class TableFinder final {
                       [](const Column& column) { return column.role != Role::kIgnored; });
       if (names.size() == columns && header.is_complete && are_all_ours) {
         take_names(header, line);
+        return {};
       }
-      return {};
     }
     return {};
   }

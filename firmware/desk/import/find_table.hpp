@@ -23,7 +23,8 @@ struct FoundTable {
   std::vector<std::size_t> header_lines;  ///< Where the names and units stand; empty for none.
   std::size_t header_line = 0;
   std::size_t first_row = 0;
-  bool is_native = false;  ///< It has no header and is taken as the native form.
+  std::size_t end_row = 0;  ///< Behind it there are only words.
+  bool is_native = false;   ///< It has no header and is taken as the native form.
 
   /// @returns The cells of a line without its comment.
   std::vector<std::string> cells(std::size_t line) const;

@@ -25,6 +25,7 @@ inline constexpr Unit kVoltsPerAcceleration = {Quantity::kAmplitude, "V/(m/s2)",
 inline constexpr Unit kDegree = {Quantity::kPhase, "deg", 0.017453292519943295};
 inline constexpr Unit kRadian = {Quantity::kPhase, "rad", 1.0};
 inline constexpr Unit kPercent = {Quantity::kRatio, "percent", 0.01};
+inline constexpr Unit kPartOfOne = {Quantity::kRatio, "relative", 1.0};
 inline constexpr Unit kDecibelUnit = {Quantity::kDecibel, "dB", 1.0};
 
 /// Finds a unit by one of its spellings: "mV/(m/s^2)", "mV_per_m_s2", "mV/(m/s²)" are the same.

@@ -40,7 +40,7 @@ class RowReader final {
       : table_(table), by_(by), options_(options), rows_(rows) {}
 
   ImportError run() {
-    for (std::size_t i = table_.first_row; i < table_.text.lines.size(); ++i) {
+    for (std::size_t i = table_.first_row; i < table_.end_row; ++i) {
       if (is_comment(table_.text.lines[i])) {
         continue;
       }

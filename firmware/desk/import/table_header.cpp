@@ -32,15 +32,48 @@ constexpr std::string_view kAmplitudeWords[] = {"a",
                                                 "\303\274bertragungsfaktor",
                                                 "amplitudengang",
                                                 "response",
-                                                "sensibilit\xC3\xA9"};
-constexpr std::string_view kPhaseWords[] = {
-    "phase",  "phi",          "\xCF\x86",   "\xCF\x95",           "angle",
-    "winkel", "phasenwinkel", "phasenlage", "phasenverschiebung", "phasengang"};
-constexpr std::string_view kUncertaintyWords[] = {
-    "u", "u95", "unc", "uncert", "uncertainty", "unsicherheit", "messunsicherheit", "incertitude"};
-constexpr std::string_view kFillers[] = {
-    "of",         "the",   "in",       "der",   "des",      "abs",  "rel", "relative", "expanded",
-    "erweiterte", "shift", "response", "value", "measured", "wert", "und", "and",      "erweitert"};
+                                                "sensibilit\xC3\xA9",
+                                                "sensibilite",
+                                                "sensibilidad"};
+constexpr std::string_view kPhaseWords[] = {"phase",      "phi",
+                                            "\xCF\x86",   "\xCF\x95",
+                                            "arg",        "angle",
+                                            "winkel",     "phasenwinkel",
+                                            "phasenlage", "phasenverschiebung",
+                                            "phasengang", "d\303\251phasage",
+                                            "dephasage",  "fase"};
+constexpr std::string_view kUncertaintyWords[] = {"u",
+                                                  "u95",
+                                                  "unc",
+                                                  "uncert",
+                                                  "uncertainty",
+                                                  "unsicherheit",
+                                                  "messunsicherheit",
+                                                  "incertitude",
+                                                  "incertidumbre"};
+constexpr std::string_view kFillers[] = {"of",
+                                         "the",
+                                         "in",
+                                         "der",
+                                         "des",
+                                         "abs",
+                                         "rel",
+                                         "relative",
+                                         "expanded",
+                                         "erweiterte",
+                                         "shift",
+                                         "response",
+                                         "value",
+                                         "measured",
+                                         "wert",
+                                         "und",
+                                         "and",
+                                         "erweitert",
+                                         "\303\251largie",
+                                         "elargie",
+                                         "expandida",
+                                         "de",
+                                         "la"};
 // A column with one of these is none of ours.
 constexpr std::string_view kOtherWords[] = {
     "deviation",   "dev",      "error", "abweichung", "residual", "model",
@@ -130,12 +163,15 @@ class NameReader final {
       column_.is_lag = true;
       return true;
     }
+    column_.is_relative = column_.is_relative || word == "rel" || word == "relative";
     if (is_uncertainty_ && (word == "common" || word == "shared")) {
       is_common_ = true;
       return true;
     }
     return is_one_of(word, kFillers);
   }
+
+  void remember(const std::string& word) { last_ = word; }
 
   /// Says what the words have made of the column; a word alone such as "standard" makes nothing.
   void finish(Role before) {
@@ -181,7 +217,10 @@ class NameReader final {
     const Role role = word.size() > 2 ? main_role(word, other) : Role::kIgnored;
     const bool is_wider = role == Role::kPhase || role == Role::kAmplitude;
     role_ = is_wider && role_ != Role::kPhase ? role : role_;
-    return is_wider;
+    // Of the letter behind "arg" or "of".
+    const bool names_quantity = (last_ == "arg" || last_ == "of" || last_ == "von") &&
+                                main_role(word, other) != Role::kIgnored;
+    return is_wider || names_quantity;
   }
 
   // What an uncertainty without a name belongs to: its unit knows (nobody states a phase in
@@ -197,6 +236,7 @@ class NameReader final {
   }
 
   Column& column_;
+  std::string last_;
   Role role_ = Role::kIgnored;
   bool is_uncertainty_ = false;
   bool is_standard_ = false;
@@ -246,7 +286,9 @@ Column read_name(const std::string& cell, Role before) {
   }
   NameReader reader(column);
   for (const Word& word : words) {
-    if (!reader.take(word.text)) {
+    const bool is_taken = reader.take(word.text);
+    reader.remember(word.text);
+    if (!is_taken) {
       column.unit_spelling = name.substr(word.begin);
       break;
     }

@@ -148,6 +148,12 @@ std::string text_of_coverage(double coverage) {
   return "k = " + (text.back() == '.' ? text.substr(0, text.size() - 1) : text);
 }
 
+bool is_statement(std::string_view text) {
+  const std::string letters = small(text);
+  return coverage_in(text) > 0.0 || has_any(letters, kStandardWords) ||
+         behind(letters, kUnitWords) < letters.size();
+}
+
 ImportError StatementReader::take(std::size_t line, std::string_view text) {
   ImportError error = take_coverage(line, text);
   return error ? error : take_units(line, text);

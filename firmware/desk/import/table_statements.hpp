@@ -28,6 +28,9 @@ struct Statements {
 /// @returns "k = 2".
 std::string text_of_coverage(double coverage);
 
+/// @returns Whether a line states a coverage factor or units.
+bool is_statement(std::string_view text);
+
 /// Reads lines one by one.
 ///
 ///     reader.take(line_number, line);

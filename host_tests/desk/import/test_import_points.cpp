@@ -394,7 +394,8 @@ TEST(Import, HeadersOverTwoLines) {
   for (const char* header : {"Frequency,Sensitivity,,Phase,\n,value,U,value,U",
                              ",Sensitivity,,Phase,\nf,value,U,value,U",
                              "Frequency,Sensitivity [V/(m/s^2)],,Phase [deg],\nHz,value,U,value,U",
-                             "Frequency,Magnitude,,Phase,\n,value,U,value,U\nHz,,,deg,deg"}) {
+                             "Frequency,Magnitude,,Phase,\n,value,U,value,U\nHz,,,deg,deg",
+                             "Frequency,Magnitude,,Phase,\nHz,V/(m/s2),U (k=2),deg,U (k=2) deg"}) {
     SCOPED_TRACE(header);
     expect_point(imported(std::string(header) + "\n3,2,0.4,1,0.5\n4,2,0.4,1,0.5\n5,2,0.4,1,0.5\n")
                      .points.points()[0],
@@ -403,6 +404,37 @@ TEST(Import, HeadersOverTwoLines) {
   EXPECT_EQ(refused("f;Sensitivity;Phase;U(A);U(phase)\nHz;lbf;deg;%;deg\n3;2;1;1;1\n4;2;1;1;1\n")
                 .problem,
             "the unit \"lbf\" of \"Sensitivity lbf\" is not known");
+}
+
+TEST(Import, MoreNamesOfHeaders) {
+  for (const char* header :
+       {"f,|K| [V/(m/s2)],arg K [deg],U(|K|),U(arg K)",
+        "Fr\u00E9quence (Hz),Sensibilit\u00E9 (V/(m/s\u00B2)),D\u00E9phasage (\u00B0),Incertitude "
+        "\u00E9largie,Incertitude phase",
+        "Frequency,Sensitivity magnitude [V/(m/s2)],Phase of sensitivity [deg],U of magnitude,U of "
+        "phase",
+        "Frequenz,\u00DCbertragungskoeffizient,Phasenverschiebung,Messunsicherheit,"
+        "Messunsicherheit",
+        "f,frequency response amplitude,frequency response phase,u amplitude,u phase"}) {
+    expect_uncertainties(std::string(header) + "\n" + kPlainRows, 0.2, 0.25);
+  }
+  // A relative uncertainty without a unit is a part of 1.
+  expect_uncertainties(std::string("f,A,phase,u_rel_A,u_phase\n") + kPlainRows, 0.4, 0.25);
+  // The header is the first comment with all names, though others stand behind it.
+  const ImportedPoints found =
+      imported(std::string("# f_khz,A,phase,U(A),U(phase)\n# by hand\n") + kPlainRows);
+  EXPECT_EQ(found.points.points()[0].frequency_hz, 3e3);
+}
+
+TEST(Import, WordsAroundTheTable) {
+  const std::string table = std::string("f,A,phase,U(A),U(phase)\n") + kPlainRows;
+  expect_uncertainties(table + "\nMeasured by,N. N.\nTemperature,23 C\n", 0.2, 0.25);
+  expect_uncertainties(table + "\nCoverage factor k = 1\n", 0.4, 0.5);
+  expect_uncertainties(std::string("f,A,phase,U(A),U(phase)\nk = 1\n") + kPlainRows, 0.4, 0.5);
+  // What is no word there, or has no empty line before it, is a row with a fault.
+  EXPECT_EQ(refused(table + "\n6,2,1\n").problem, "there are 3 columns: \"6,2,1\"");
+  EXPECT_EQ(refused(table + "\nMeasured by N. N.\n6,2,1,0.4,0.5\n").line, 6U);
+  EXPECT_EQ(refused(table + "x,2,1,0.4,0.5\n").problem, "f is not a number: \"x\" (column 1)");
 }
 
 TEST(Import, TwoUncertaintiesOfTheSameName) {
