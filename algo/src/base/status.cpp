@@ -81,8 +81,8 @@ const char* explain(Status status) noexcept {
       return "The ratio of the channels is implausible, as if they were swapped; check the cables "
              "and the gains set.";
     case Status::kDistorted:
-      return "The response is not a sine at the drive's frequency; lower the level and check the "
-             "mounting.";
+      return "The response is not a sine at the drive's frequency; lower the level, check the "
+             "mounting and leave out what excites a sharp resonance.";
     case Status::kStopped:
       return "The measurement was stopped on request; start it again when ready.";
     case Status::kDcDrift:

@@ -11,12 +11,16 @@ namespace emax::app {
 namespace {
 
 constexpr double kSettlePeriods = 3.0;
+constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
+constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
+constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
 constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
 constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
-constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once.
+constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once,
+constexpr double kLoweredShare = 0.5;    // to this share.
 constexpr double kCautiousShare = 0.25;  // Of the limit, before this frequency was seen.
 constexpr std::uint64_t kMinEqualWords = 256;
 
@@ -152,14 +156,14 @@ void Sweep::watch() noexcept {
     fail(Status::kStuckChannel);
     return;
   }
-  work_.is_lowering_ = work_.is_lowering_ &&
-                       work_.activity_ == SweepWorkspace::Activity::kSettling &&
-                       work_.left_ > work_.settle_left_;
-  if (work_.is_lowering_) {
+  work_.is_lowering_ = work_.is_lowering_ && work_.activity_ == SweepWorkspace::Activity::kSettling;
+  if (work_.is_lowering_ && work_.left_ > work_.settle_left_) {
     return;
   }
   const double peak_v = reference_peak_v() - kNoisePeak * results_.inputs.silent_reference.noise_v;
-  if (full_scale || acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2) {
+  // The device may ring while it settles.
+  if ((full_scale && !work_.is_lowering_) ||
+      acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2) {
     lower_level();
   }
 }
@@ -249,10 +253,23 @@ void Sweep::end_silence() noexcept {
 double Sweep::aim_mps2() const noexcept {
   const double room = work_.level_room_mps2_;
   const double level = results_.settings.level_mps2;
-  const double wanted = work_.level_scale_ * (level < kRoomShare * room ? level : 0.5 * room);
+  const double wanted =
+      work_.level_scale_ * (level < kRoomShare * room ? level : kLoweredShare * room);
   const double most = (work_.target_.is_close ? kLimitShare : kCautiousShare) *
                       results_.settings.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
+}
+
+// A sharp resonance ahead takes the device's channel to full scale, and it needs periods to ring
+// up.
+void Sweep::foresee_resonance() noexcept {
+  const double flat = 1.0 / sqrt(norm(results_.check_before));
+  const double foreseen = sqrt(norm(inverse_expected()));
+  const double least = std::max(foreseen, kSharpest * flat);
+  work_.target_.periods = std::max(kSettlePeriods, kRingingPeriods * flat / least);
+  const double room_mps2 = acceleration_of(
+      std::min(work_.scales_.reference_v, work_.scales_.device_v * ratio_factor() * least));
+  work_.level_room_mps2_ = std::max(room_mps2, kLeastRoom * results_.settings.level_mps2);
 }
 
 void Sweep::begin_target(double frequency_hz) noexcept {
@@ -261,9 +278,13 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   SweepWorkspace::Target& target = work.target_;
   target = SweepWorkspace::Target();
   target.frequency_hz = frequency_hz;
+  target.periods = kSettlePeriods;
   // What the last frequency has left room for holds what the level was lowered by there.
   const bool is_by_room = !(settings.level_mps2 < kRoomShare * work.level_room_mps2_);
   work.level_scale_ = !is_by_room && work.level_scale_ < 0.5 ? 2.0 * work.level_scale_ : 1.0;
+  if (results_.stage == SweepStage::kPoints) {
+    foresee_resonance();
+  }
   // Whole periods, to the nearest frame.
   const double period = work.format_.sample_rate_hz / frequency_hz;
   const double by_duration = floor(settings.repeat_s * frequency_hz + 0.999999);
@@ -285,9 +306,9 @@ void Sweep::begin_target(double frequency_hz) noexcept {
 }
 
 void Sweep::drive_to(double amplitude_v) noexcept {
-  const double periods = kSettlePeriods / work_.target_.frequency_hz;
+  const double periods_s = work_.target_.periods / work_.target_.frequency_hz;
   const double settle_s =
-      results_.settings.settle_s > periods ? results_.settings.settle_s : periods;
+      work_.target_.settle_scale * std::max(results_.settings.settle_s, periods_s);
   work_.settle_left_ = frames_of(settle_s * work_.format_.sample_rate_hz);
   work_.left_ = work_.drive_.go_to(work_.target_.frequency_hz, amplitude_v) +
                 work_.format_.latency_frames + work_.settle_left_ + 1u;

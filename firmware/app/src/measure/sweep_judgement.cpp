@@ -15,13 +15,20 @@ constexpr double kContradiction = 0.67;   // Of what the device saw per drive be
 constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
 constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
 constexpr std::uint32_t kMaxTries = 12;
-constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
-constexpr double kDistortedShare = 0.1;  // An error above,
-constexpr double kFlaggedShare = 0.03;   // flagged above.
-constexpr double kOffsetShare = 0.02;    // Of full scale, against the silence.
-constexpr double kTurnedRound = 0.9;     // Cosine of the angle to half a turn,
-constexpr double kFlatWithin = 1.2;      // and the largest factor to the check's ratio.
-constexpr double kLargestJump = 8.0;     // Of the ratio, from one frequency to the next.
+constexpr double kLooseShare = 0.01;            // Repeats that differ by more are taken again.
+constexpr double kDistortedShare = 0.1;         // An error above,
+constexpr double kFlaggedShare = 0.03;          // flagged above.
+constexpr double kOffsetShare = 0.02;           // Of full scale, against the silence.
+constexpr double kTurnedRound = 0.9;            // Cosine of the angle to half a turn,
+constexpr double kFlatWithin = 1.2;             // and the largest factor to the check's ratio.
+constexpr double kLargestJump = 8.0;            // Of the ratio, from one frequency to the next.
+constexpr std::uint32_t kMostRingingLooks = 2;  // After the first.
+constexpr double kRingingScale = 8.0;           // Of the settling time, for each of them,
+constexpr double kLookShare = 0.25;             // and of the drive, for the last.
+constexpr double kSwappedShare = 0.16;          // Of the squares of the distances to both.
+constexpr double kResonant = 0.3;               // Of 1/K that a device of second order would have,
+constexpr double kShortestBase = 0.1;           // Of the square of the frequency, for a slope.
+constexpr double kResonantFlat = 0.01;          // and of that at the check frequency.
 
 // A device of second order never leads. Sensors with a high pass do, by less than a degree where
 // it matters; a skew that was set wrong by 1 us adds to it.
@@ -144,13 +151,22 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   const double needed_v = aim * per_acceleration;
   ++work_.target_.tries;
   if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
-    fail(Status::kLevelNotReached);
+    fail_at_level();
     return;
   }
   if (needed_v > most_v && drive_v >= most_v) {
     return;  // Within the tolerance at the largest drive.
   }
   drive_to(needed_v < most_v ? needed_v : most_v);
+}
+
+bool Sweep::is_level_little() const noexcept {
+  return work_.level_room_mps2_ < results_.settings.level_mps2;
+}
+
+// A level that full scale has made little is not reached for the converters' steps.
+void Sweep::fail_at_level() noexcept {
+  fail(is_level_little() ? Status::kSaturated : Status::kLevelNotReached);
 }
 
 // What takes one of the channels to full scale, as far as their gains can be believed: of a
@@ -207,7 +223,7 @@ bool Sweep::may_rise(const Reading& reference, const Reading& device, double nee
     return true;
   }
   if (++target.tries > kMaxTries) {
-    fail(Status::kLevelNotReached);
+    fail_at_level();
     return false;
   }
   target.unconfirmed_v = per_acceleration;
@@ -260,25 +276,45 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
     return Status::kDcDrift;
   }
   const double samples = static_cast<double>(work_.target_.repeat_frames);
+  // Above a sharp resonance there is little beside what rings on: it is judged by what the device
+  // sees at the check frequency.
+  const double flat_v =
+      reference.fit.amplitude_v * magnitude(results_.check_before) / ratio_factor();
+  const double device_v = device.fit.amplitude_v > flat_v ? device.fit.amplitude_v : flat_v;
   const double distortion[] = {
       distortion_of(reference.fit.residual_std_v, results_.inputs.silent_reference.noise_v,
                     reference.fit.amplitude_v, samples),
-      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v,
-                    device.fit.amplitude_v, samples)};
-  if (distortion[0] > kDistortedShare || distortion[1] > kDistortedShare) {
+      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v, device_v,
+                    samples)};
+  // A drive of few steps is no good sine; its point is flagged.
+  const double most = is_level_little() ? 2.0 * kDistortedShare : kDistortedShare;
+  if (distortion[0] > most || distortion[1] > most) {
     return Status::kDistorted;
   }
   return Status::kOk;
 }
 
-// A fault that begins within a repeat looks like another one: the second look decides.
+// A fault that begins within a repeat looks like another one: the second look decides. What is not
+// a sine may be a sharp resonance that rings: it gets more time, and then a lower level, because
+// its share of the drive's harmonics falls with it.
 void Sweep::suspect(Status status) noexcept {
-  if (work_.target_.was_suspect) {
+  SweepWorkspace::Target& target = work_.target_;
+  const bool may_ring = status == Status::kDistorted && results_.stage != SweepStage::kCheckBefore;
+  if (target.looks >= (may_ring ? kMostRingingLooks : 1)) {
     fail(status);
     return;
   }
-  work_.target_.was_suspect = true;
-  drive_to(work_.drive_.amplitude_v());
+  ++target.looks;
+  double drive_v = work_.drive_.amplitude_v();
+  if (may_ring) {
+    target.settle_scale *= kRingingScale;
+    // A level that full scale has made little needs its steps.
+    if (target.looks == kMostRingingLooks && !is_level_little()) {
+      work_.level_scale_ *= kLookShare;
+      drive_v *= kLookShare;
+    }
+  }
+  drive_to(drive_v);
 }
 
 // K over the ratio of the volts.
@@ -298,7 +334,7 @@ void Sweep::end_target() noexcept {
   PointScatter scatter = scatter_of(work_.repeats_);
   scatter.repeat_samples = static_cast<double>(work_.target_.repeat_frames);
   const double by_noise = kNoisePeak * expected_scatter(scatter, results_.inputs);
-  if (scatter.largest > by_noise + (work_.target_.was_suspect ? kDistortedShare : kLooseShare)) {
+  if (scatter.largest > by_noise + (work_.target_.looks > 1 ? kDistortedShare : kLooseShare)) {
     suspect(Status::kDistorted);
     return;
   }
@@ -342,6 +378,24 @@ bool Sweep::has_turned_round(Complex ratio, Complex before) const noexcept {
          !is_beyond(work_.target_.frequency_hz / before_hz, kPlausibleFactor);
 }
 
+// What check and last frequency let expect of a device of second order: of its 1/K the real part is
+// linear in the square of the frequency, and the imaginary part in the frequency.
+Complex Sweep::inverse_expected() const noexcept {
+  const Complex flat = reciprocal(results_.check_before);
+  const std::size_t count = results_.point_count;
+  if (count == 0) {
+    return flat;
+  }
+  const Complex before = reciprocal(work_.last_ratio_);
+  const double before_hz = results_.settings.frequency_hz[count - 1];
+  const double step = work_.target_.frequency_hz / before_hz;
+  const double check = results_.settings.check_hz / before_hz;
+  const double base = 1.0 - check * check;
+  // Too near one another, they tell no slope.
+  const double slope = abs(base) > kShortestBase ? (before.re - flat.re) / base : 0.0;
+  return {before.re + slope * (step * step - 1.0), step * before.im};
+}
+
 Status Sweep::plausibility_of(Complex ratio) const noexcept {
   const bool is_check = results_.stage != SweepStage::kPoints;
   const double factor = ratio_factor();
@@ -353,16 +407,27 @@ Status Sweep::plausibility_of(Complex ratio) const noexcept {
     expected = norm(work_.last_ratio_) > 0.0 ? work_.last_ratio_ : results_.check_before;
   }
   // Exchanged channels turn V_a/V_r, which is ratio/factor, into its inverse.
-  const Complex swapped = Complex{factor * factor, 0.0} / expected;
+  Complex swapped = Complex{factor * factor, 0.0} / expected;
   const double jump = magnitude(ratio) / magnitude(expected);
-  if (work_.target_.was_overrange && is_beyond(jump, is_check ? kPlausibleFactor : kLargestJump)) {
+  const Complex inverse = inverse_expected();
+  const bool is_foreseen = !is_check && magnitude(reciprocal(ratio) - inverse) <
+                                            kResonant * magnitude(inverse) +
+                                                kResonantFlat / magnitude(results_.check_before);
+  if (work_.target_.was_overrange && !is_foreseen &&
+      is_beyond(jump, is_check ? kPlausibleFactor : kLargestJump)) {
     return Status::kSaturated;
   }
   if (is_check && is_beyond(jump, kPlausibleFactor)) {
     return Status::kSwappedChannels;
   }
-  const double to_expected = magnitude(ratio - expected);
-  if (!is_check && magnitude(ratio - swapped) < 0.4 * to_expected) {
+  if (is_foreseen) {
+    expected = reciprocal(inverse);
+    swapped = factor * factor * inverse;
+  }
+  // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
+  const double to_expected2 = norm(ratio - expected);
+  if (!is_check && norm(ratio - swapped) * magnitude(expected) <
+                       kSwappedShare * to_expected2 * magnitude(swapped)) {
     return cables_of(ratio, expected, swapped);
   }
   if (!is_check && has_turned_round(ratio, expected)) {
@@ -370,7 +435,7 @@ Status Sweep::plausibility_of(Complex ratio) const noexcept {
   }
   const double phase = atan2(ratio.im, ratio.re);
   // Past half a turn of lag the phase begins again at the top.
-  const bool went_on = !is_check && expected.re < 0.0 && to_expected < 0.5 * magnitude(expected);
+  const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * norm(expected);
   if (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz && !went_on) {
     return cables_of(ratio, expected, swapped);
   }

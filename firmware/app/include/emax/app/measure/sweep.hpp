@@ -87,12 +87,15 @@ class Sweep {
   void consume(std::size_t from, std::size_t count) noexcept;
   void end_activity() noexcept;
   void end_silence() noexcept;
+  void foresee_resonance() noexcept;
   void begin_target(double frequency_hz) noexcept;
   void drive_to(double amplitude_v) noexcept;
   void begin_repeat() noexcept;
   void end_repeat() noexcept;
   Reading reading_of(const SineFitResult& fit, const SilentChannel& silent) const noexcept;
   void judge_first(const Reading& reference, const Reading& device) noexcept;
+  bool is_level_little() const noexcept;
+  void fail_at_level() noexcept;
   double room_mps2(double reference_v, double device_v) const noexcept;
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   void raise_drive() noexcept;
@@ -101,6 +104,7 @@ class Sweep {
   void suspect(Status status) noexcept;
   void end_target() noexcept;
   bool has_turned_round(Complex ratio, Complex before) const noexcept;
+  Complex inverse_expected() const noexcept;
   Status plausibility_of(Complex ratio) const noexcept;
   void store_point(const PointScatter& scatter, Complex ratio) noexcept;
   void begin_next() noexcept;

@@ -39,7 +39,9 @@ class SweepWorkspace {
     // The most drive that the frequency before lets expect; more is refused until it is confirmed.
     double permitted_v = 0.0;
     double unconfirmed_v = 0.0;  // V/(m/s^2) of the first look that asked for more.
-    bool was_suspect = false;
+    double periods = 0.0;        // To settle, at least;
+    double settle_scale = 1.0;   // the time to settle times this.
+    std::uint32_t looks = 0;     // Again, at what was suspect.
     bool was_overrange = false;
     bool is_close = false;  // The level of this frequency has been seen.
   };
