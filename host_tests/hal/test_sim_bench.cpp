@@ -391,6 +391,70 @@ TEST(SimBench, TruthIsInTheWords) {
   }
 }
 
+// Of a drive, a reference and a device channel with front ends the words tell the same volts.
+TEST(SimBench, FrontEndScales) {
+  BenchSettings settings = ideal_bench();
+  SimBench plain;
+  ASSERT_EQ(plain.configure(settings), Status::kOk);
+  settings.front_end = {5.0, 40.0, 1.25};
+  SimBench scaled;
+  ASSERT_EQ(scaled.configure(settings), Status::kOk);
+  const Pair volts = response(plain, 1000, 0.5);
+  const Pair words = response(scaled, 1000, 1.0);  // 1 V at the pin is 0.5 V outside.
+  // Words are 4.7e-9 V; the last factor makes one of them larger.
+  EXPECT_LT(std::abs(words.reference * 4.0 - volts.reference), 4e-8);
+  EXPECT_LT(std::abs(words.device / 8.0 - volts.device), 2e-8);
+}
+
+TEST(SimBench, RatioOfTheChannelsIsTheDevices) {
+  BenchSettings settings = ideal_bench();
+  SimBench plain;
+  ASSERT_EQ(plain.configure(settings), Status::kOk);
+  settings.ratio = 1.03;
+  SimBench off;
+  ASSERT_EQ(off.configure(settings), Status::kOk);
+  EXPECT_EQ(off.truth().gain_factor, 1.03);
+  const Pair whole = response(plain, 1000, 0.5);
+  const Pair seen = response(off, 1000, 0.5);
+  EXPECT_EQ(seen.reference, whole.reference);
+  EXPECT_LT(std::abs(seen.device / whole.device - 1.03), 2e-8);
+}
+
+TEST(SimBench, ClockCrosstalkAndLinearityAreAsDrawn) {
+  BenchSettings settings = ideal_bench();
+  settings.clock_expanded_ppm = 1e4;
+  settings.crosstalk_expanded_percent = 1.0;
+  settings.linearity_expanded_percent = 1.0;
+  for (const double full_scale_v : {0.0, 5.0}) {
+    settings.front_end = {0.0, full_scale_v, full_scale_v};
+    SimBench bench;
+    ASSERT_EQ(bench.configure(settings), Status::kOk);
+    const BenchTruth& truth = bench.truth();
+    ASSERT_GT(std::abs(truth.clock_factor - 1.0), 1e-3);
+    ASSERT_GT(std::abs(truth.into_device), 1e-3);
+    ASSERT_GT(std::abs(truth.device_linearity), 1e-3);
+    const double scale = full_scale_v > 0.0 ? full_scale_v / 10.0 : 1.0;
+    const Pair words = response(bench, 4000, 1.0);
+    const Pair seen = {words.reference * scale, words.device * scale};
+    // Everything happens at the true frequency; a cubic error of a sine of amplitude A changes the
+    // gain by the square of A over full scale.
+    const double true_hz = 4000.0 * truth.clock_factor;
+    const double interval_s = 1e-5 / truth.clock_factor;
+    const Complex reference = acceleration_seen(settings.shaker, true_hz, interval_s);
+    const Complex device =
+        device_seen(settings.device, settings.shaker, true_hz, interval_s, settings.skew_s);
+    const auto bent = [&](Complex clean, double linearity) {
+      return clean * (1.0 + linearity * std::norm(clean / (10.0 * scale)));
+    };
+    const Complex expected_reference =
+        bent(reference, truth.reference_linearity) + truth.into_reference * device;
+    const Complex expected_device =
+        bent(device, truth.device_linearity) + truth.into_device * reference;
+    EXPECT_LT(std::abs(seen.reference - expected_reference), 1e-7);
+    EXPECT_LT(std::abs(seen.device - expected_device), 1e-7);
+  }
+}
+
 TEST(SimBench, ReferenceDriftsAndThenStays) {
   BenchSettings settings = ideal_bench();
   settings.drift_expanded_percent = 10.0;

@@ -68,7 +68,8 @@ TEST(SimFaults, Names) {
                                                       "unplugged-device",
                                                       "swapped-channels",
                                                       "inverted-polarity",
-                                                      "dc-drift"};
+                                                      "dc-drift",
+                                                      "gain-step"};
   for (std::size_t i = 0; i < kFaultKinds; ++i) {
     const auto kind = static_cast<FaultKind>(i);
     EXPECT_STREQ(name_of(kind), names[i]);
@@ -133,6 +134,16 @@ TEST(SimFaults, UnpluggedLeavesOffsetHumAndNoise) {
       differing += result.sound[i].reference != silence[i].reference ? 1 : 0;
     }
     EXPECT_GT(differing, 3000);
+  }
+}
+
+TEST(SimFaults, GainStepMultiplies) {
+  const Both result = both(FaultKind::kGainStep, ideal_bench());
+  for (std::size_t i = kAt; i < kFrames; ++i) {
+    EXPECT_EQ(result.faulty[i].reference, result.sound[i].reference);
+    // Two roundings of half a word, 2.4e-9 V each, one of them larger by the factor.
+    EXPECT_NEAR(volts(result.faulty[i], Channel::kDevice),
+                sim::kGainStepFactor * volts(result.sound[i], Channel::kDevice), 6e-9);
   }
 }
 

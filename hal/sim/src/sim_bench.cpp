@@ -12,6 +12,8 @@ using hal::Word;
 
 bool positive(double x) noexcept { return x > 0.0 && is_finite(x); }
 
+bool full_scale_ok(double volts) noexcept { return volts >= 0.0 && is_finite(volts); }
+
 bool format_ok(const StreamFormat& format) noexcept {
   return positive(format.sample_rate_hz) && positive(format.drive_full_scale_v) &&
          positive(format.input_full_scale_v) && format.block_frames >= 1 &&
@@ -40,6 +42,11 @@ Status SimBench::configure(const BenchSettings& settings) noexcept {
   if (!format_ok(format())) {
     return Status::kInvalidArgument;
   }
+  const FrontEnd& given = settings.front_end;
+  if (!full_scale_ok(given.drive_v) || !full_scale_ok(given.reference_v) ||
+      !full_scale_ok(given.device_v)) {
+    return Status::kInvalidArgument;
+  }
   const Status status = bench_.configure(settings, format().sample_rate_hz);
   if (status != Status::kOk) {
     return status;
@@ -57,7 +64,14 @@ Status SimBench::configure(const BenchSettings& settings) noexcept {
     adc_.half_scale = static_cast<double>(std::int64_t{1} << (kAdcBits - 1U));
     adc_.words_per_code = std::int64_t{1} << (32U - kAdcBits);
   }
-  adc_.codes_per_v = adc_.half_scale / format().input_full_scale_v;
+  const FrontEnd& outside = settings.front_end;
+  const auto or_pin = [](double outside_v, double pin_v) {
+    return outside_v > 0.0 ? outside_v : pin_v;
+  };
+  const double pin_v = format().input_full_scale_v;
+  drive_full_scale_v_ = or_pin(outside.drive_v, format().drive_full_scale_v);
+  adc_.reference_codes_per_v = adc_.half_scale / or_pin(outside.reference_v, pin_v);
+  adc_.device_codes_per_v = adc_.half_scale / or_pin(outside.device_v, pin_v);
   return Status::kOk;
 }
 
@@ -136,7 +150,8 @@ Frame SimBench::advance(Word word) noexcept {
     stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
   }
   const BenchVolts volts = bench_.step(drive_v(at_dac));
-  Frame frame{digitised(volts.reference_v), digitised(volts.device_v)};
+  Frame frame{digitised(volts.reference_v * adc_.reference_codes_per_v),
+              digitised(volts.device_v * adc_.device_codes_per_v)};
   if (stuck_) {
     frame.device = last_device_;
   }
@@ -155,7 +170,7 @@ void SimBench::record(Word word) noexcept {
   dac_.frames_since_nonzero = word == 0 ? dac_.frames_since_nonzero + 1 : 0;
 }
 
-/// What the DAC hands out for `word`: the highest bits of it.
+/// What the front end makes of the DAC's output for `word`: of the highest bits of it.
 double SimBench::drive_v(Word word) const noexcept {
   double codes = static_cast<double>(word) / hal::kWordsPerFullScale;
   if (!settings().ideal_converters) {
@@ -165,11 +180,10 @@ double SimBench::drive_v(Word word) const noexcept {
     const std::int64_t code = (word + kHalfScale * kWordsPerCode) / kWordsPerCode - kHalfScale;
     codes = static_cast<double>(code) / kHalfScale;
   }
-  return codes * format().drive_full_scale_v;
+  return codes * drive_full_scale_v_;
 }
 
-Word SimBench::digitised(double volts) const noexcept {
-  double code = volts * adc_.codes_per_v;
+Word SimBench::digitised(double code) const noexcept {
   code = code < adc_.half_scale - 1.0 ? code : adc_.half_scale - 1.0;
   code = code > -adc_.half_scale ? code : -adc_.half_scale;
   const std::int64_t rounded = static_cast<std::int64_t>(code + (adc_.half_scale + 0.5)) -

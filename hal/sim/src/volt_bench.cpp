@@ -18,7 +18,8 @@ constexpr std::array<const char*, kFaultKinds> kFaultNames = {"none",
                                                               "unplugged-device",
                                                               "swapped-channels",
                                                               "inverted-polarity",
-                                                              "dc-drift"};
+                                                              "dc-drift",
+                                                              "gain-step"};
 
 constexpr double kTwoTo64 = 18446744073709551616.0;
 constexpr double kTwoToMinus53 = 1.1102230246251565e-16;
@@ -47,12 +48,12 @@ bool uncertainties_ok(const BenchSettings& settings) noexcept {
 
 bool electronics_ok(const BenchSettings& settings, double sample_rate_hz) noexcept {
   return positive(settings.reference_gain) && positive(settings.device_gain) &&
-         positive(settings.reference_sensitivity) && positive(settings.drift_time_s) &&
-         not_negative(settings.noise_v) && not_negative(settings.offset_v) &&
-         not_negative(settings.hum_v) && settings.hum_hz >= 0.0 &&
-         settings.hum_hz <= 0.5 * sample_rate_hz && settings.second_harmonic >= 0.0 &&
-         settings.second_harmonic <= kMaxHarmonic && settings.third_harmonic >= 0.0 &&
-         settings.third_harmonic <= kMaxHarmonic;
+         positive(settings.ratio) && positive(settings.reference_sensitivity) &&
+         positive(settings.drift_time_s) && not_negative(settings.noise_v) &&
+         not_negative(settings.offset_v) && not_negative(settings.hum_v) &&
+         settings.hum_hz >= 0.0 && settings.hum_hz <= 0.5 * sample_rate_hz &&
+         settings.second_harmonic >= 0.0 && settings.second_harmonic <= kMaxHarmonic &&
+         settings.third_harmonic >= 0.0 && settings.third_harmonic <= kMaxHarmonic;
 }
 
 /// What the plant is built with, drawn apart so that the other draws stay what they are.
@@ -74,9 +75,11 @@ Times draw_times(const BenchSettings& settings) noexcept {
 
 /// The gain changes with the square of the voltage. A sine of amplitude A in x^3 has 3 A^3/4 at its
 /// own frequency.
-double bent_v(double volts, double linearity) noexcept {
-  constexpr double kPerSquare = 4.0 / 3.0 / (kLinearScale_v * kLinearScale_v);
-  return volts * (1.0 + kPerSquare * linearity * (volts * volts));
+double bent_v(double volts, double bend) noexcept { return volts * (1.0 + bend * (volts * volts)); }
+
+double bend_of(double linearity, double full_scale_v) noexcept {
+  const double scale_v = full_scale_v > 0.0 ? full_scale_v : kLinearScale_v;
+  return 4.0 / 3.0 / (scale_v * scale_v) * linearity;
 }
 
 bool equal(const char* a, const char* b) noexcept {
@@ -148,7 +151,7 @@ void VoltBench::draw() noexcept {
       settings_.reference_sensitivity *
       (1.0 + kStandard * settings_.reference_expanded_percent * reference);
   truth_.reference_drift = kStandard * settings_.drift_expanded_percent * drift;
-  truth_.gain_factor = 1.0 + kStandard * settings_.gain_expanded_percent * gain;
+  truth_.gain_factor = settings_.ratio * (1.0 + kStandard * settings_.gain_expanded_percent * gain);
   truth_.mounting_factor = 1.0 + kStandard * settings_.mounting_expanded_percent * mounting;
   const Times times = draw_times(settings_);
   truth_.clock_factor = times.clock_factor;
@@ -172,6 +175,8 @@ void VoltBench::draw() noexcept {
   truth_.into_device = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
   truth_.reference_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
   truth_.device_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
+  reference_.bend = bend_of(truth_.reference_linearity, settings_.front_end.reference_v);
+  device_.bend = bend_of(truth_.device_linearity, settings_.front_end.device_v);
 }
 
 BenchVolts VoltBench::step(double drive_v) noexcept {
@@ -196,9 +201,8 @@ BenchVolts VoltBench::step(double drive_v) noexcept {
       conditioned_v(reference_, sensed.acceleration_mps2 * drift_factor_, noise.first),
       conditioned_v(device_, sensed.device_v, noise.second)};
   const BenchVolts volts = {
-      bent_v(clean.reference_v, truth_.reference_linearity) +
-          truth_.into_reference * clean.device_v,
-      bent_v(clean.device_v, truth_.device_linearity) + truth_.into_device * clean.reference_v};
+      bent_v(clean.reference_v, reference_.bend) + truth_.into_reference * clean.device_v,
+      bent_v(clean.device_v, device_.bend) + truth_.into_device * clean.reference_v};
   ++clock_;
   return swapped_ ? BenchVolts{volts.device_v, volts.reference_v} : volts;
 }
@@ -237,6 +241,9 @@ void VoltBench::break_down(FaultKind kind) noexcept {
       return;
     case FaultKind::kDcDrift:
       offset_climb_v_ = kOffsetClimbPerSecond_v / sample_rate_hz_;
+      return;
+    case FaultKind::kGainStep:
+      device_.scale *= kGainStepFactor;
       return;
   }
 }

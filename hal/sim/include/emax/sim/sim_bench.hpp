@@ -29,14 +29,15 @@ struct DacRecord {
 
 /// An honest bench, the same to the last bit on every target.
 ///
-/// Drive words -> latency -> 12-bit DAC (which drops the other bits) -> `VoltBench` -> 16-bit ADCs.
+/// Drive words -> latency -> 12-bit DAC (which drops the other bits) -> front end -> `VoltBench` ->
+/// front end -> 16-bit ADCs.
 /// While the stream has been started once only, the frame of a fault is also the index of the
 /// first response frame that is wrong; a lost or late block is the one that contains it.
 ///
 /// Time is virtual: the clock counts frames and moves only when the stream does. While nothing is
 /// exchanged, the bench stands still.
 ///
-/// 2.4 KiB, no heap, no pointers; `configure()` takes 1.5 KiB of stack. One frame costs about 60 ns
+/// 2.5 KiB, no heap, no pointers; `configure()` takes 1.5 KiB of stack. One frame costs about 60 ns
 /// on a PC.
 class SimBench final : public hal::AnalogStream {
  public:
@@ -74,9 +75,10 @@ class SimBench final : public hal::AnalogStream {
   void do_stop() noexcept override;
   bool do_drive_is_at_zero() const noexcept override { return dac_.last == 0; }
 
-  /// From volts to words.
+  /// From volts outside the front end to words.
   struct Converter {
-    double codes_per_v = 0.0;
+    double reference_codes_per_v = 0.0;
+    double device_codes_per_v = 0.0;
     double half_scale = 0.0;  ///< Codes go from -half_scale to half_scale - 1.
     std::int64_t words_per_code = 1;
   };
@@ -85,11 +87,12 @@ class SimBench final : public hal::AnalogStream {
   void record(hal::Word word) noexcept;
   bool event_due(FaultKind kind) noexcept;
   double drive_v(hal::Word word) const noexcept;
-  hal::Word digitised(double volts) const noexcept;
+  hal::Word digitised(double code) const noexcept;
 
   VoltBench bench_ = {};
   DacRecord dac_ = {};
   Converter adc_ = {};
+  double drive_full_scale_v_ = 0.0;  ///< Outside the front end.
   std::uint64_t started_at_ = 0;
   std::array<hal::Word, kMaxLatencyFrames + 1> pipeline_ = {};  ///< Drive on its way.
   hal::Word last_device_ = 0;
@@ -98,6 +101,6 @@ class SimBench final : public hal::AnalogStream {
   bool stuck_ = false;
 };
 
-static_assert(sizeof(SimBench) <= 2496);
+static_assert(sizeof(SimBench) <= 2560);
 
 }  // namespace emax::sim

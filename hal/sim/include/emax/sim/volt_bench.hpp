@@ -17,7 +17,11 @@ inline constexpr double kSaturationFactor = 20.0;
 /// Volts per second by which the offset climbs in FaultKind::kDcDrift.
 inline constexpr double kOffsetClimbPerSecond_v = 5.0;
 
-/// The amplitude of a sine at which a channel's gain has changed by its linearity error.
+/// By how much the device's gain changes in FaultKind::kGainStep.
+inline constexpr double kGainStepFactor = 1.25;
+
+/// The amplitude of a sine at which a channel's gain has changed by its linearity error, where the
+/// front end has no full scale of its own.
 inline constexpr double kLinearScale_v = 10.0;
 
 /// What goes wrong: once, or from then on.
@@ -32,12 +36,13 @@ enum class FaultKind : std::uint8_t {
   kSwappedChannels,     ///< Each channel's signal comes in as the other's.
   kInvertedPolarity,    ///< The device's signal changes its sign.
   kDcDrift,             ///< The device's offset climbs by kOffsetClimbPerSecond_v.
+  kGainStep,            ///< The device's conditioner multiplies by kGainStepFactor more.
 };
-inline constexpr std::size_t kFaultKinds = 10;
+inline constexpr std::size_t kFaultKinds = 11;
 
 /// @returns The name for command lines: "none", "lost-block", "late-block", "stuck-channel",
 /// "saturation", "unplugged-reference", "unplugged-device", "swapped-channels",
-/// "inverted-polarity", "dc-drift". Never null.
+/// "inverted-polarity", "dc-drift", "gain-step". Never null.
 const char* name_of(FaultKind kind) noexcept;
 
 struct ParsedFault {
@@ -52,6 +57,14 @@ ParsedFault parse_fault(const char* name) noexcept;
 struct Fault {
   FaultKind kind = FaultKind::kNone;
   std::uint64_t at_frame = 0;
+};
+
+/// Full scales in volts outside the front end, which scales between them and the converters; 0 for
+/// a wire.
+struct FrontEnd {
+  double drive_v = 0.0;
+  double reference_v = 0.0;
+  double device_v = 0.0;
 };
 
 /// What a bench is made of. `BenchSettings{}` is the default one. Percentages are expanded
@@ -72,7 +85,8 @@ struct BenchSettings {
   double drift_time_s = 10.0;               ///< how long it takes; then it stays.
   double reference_gain = 10.0;             ///< Conditioners, nominal.
   double device_gain = 1.0;
-  double gain_expanded_percent = 0.1;      ///< Of the ratio of both gains.
+  double gain_expanded_percent = 0.1;      ///< Of the ratio of both gains, and
+  double ratio = 1.0;                      ///< what it is beside: a loopback finds it.
   double mounting_expanded_percent = 0.2;  ///< Mounting, transverse motion, temperature.
 
   double noise_v = 5e-3;   ///< Standard deviation of each channel's white noise, at the ADC.
@@ -83,8 +97,9 @@ struct BenchSettings {
   double skew_expanded_s = 0.0;  ///< Of that.
   double clock_expanded_ppm = 0.0;          ///< Of the rate of sampling.
   double crosstalk_expanded_percent = 0.0;  ///< Of each channel's voltage seen in the other.
-  /// Change of each channel's gain at kLinearScale_v, growing with the square of the voltage.
+  /// Change of each channel's gain at its full scale, growing with the square of the voltage.
   double linearity_expanded_percent = 0.0;
+  FrontEnd front_end;
   bool ideal_converters = false;  ///< DAC and ADC use all 32 bits of a word; they still clip.
   Fault fault;
   Fault second_fault;
@@ -101,7 +116,7 @@ struct BenchTruth {
   double clock_factor = 1.0;     ///< True rate of sampling over the nominal one.
   double into_reference = 0.0;   ///< Crosstalk.
   double into_device = 0.0;
-  double reference_linearity = 0.0;  ///< Relative change of the gain at kLinearScale_v.
+  double reference_linearity = 0.0;  ///< Relative change of the gain at full scale.
   double device_linearity = 0.0;
   double reference_offset_v = 0.0;
   double device_offset_v = 0.0;
@@ -162,6 +177,7 @@ class VoltBench {
   struct Channel {
     double scale = 0.0;  ///< Volts per unit of what the sensor hands over.
     double offset_v = 0.0;
+    double bend = 0.0;  ///< Of the gain, per square of the volts.
     double hum_phase_rad = 0.0;
     SinCos hum = {0.0, 1.0};
   };
@@ -188,6 +204,6 @@ class VoltBench {
   bool swapped_ = false;
 };
 
-static_assert(sizeof(VoltBench) <= 1856);
+static_assert(sizeof(VoltBench) <= 1920);
 
 }  // namespace emax::sim
