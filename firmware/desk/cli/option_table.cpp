@@ -22,12 +22,13 @@ constexpr double kMaxReferencePercent = 50.0;
 constexpr double kMaxFaultTime_s = 1e6;
 constexpr double kDefaultFaultTime_s = 3.0;
 constexpr double kMaxNoise_v = 1.0;
+constexpr double kMaxDriftPercent = 50.0;
+constexpr double kMaxSkew_s = 4e-6;  // Of the bench, whose interval is 10 us.
 
 constexpr const char* kExpectedFault =
     "none, lost-block, late-block, stuck-channel, saturation, unplugged-reference, "
-    "unplugged-device, swapped-channels, inverted-polarity or dc-drift, and perhaps @SECONDS; one "
-    "or "
-    "two of them";
+    "unplugged-device, swapped-channels, inverted-polarity, dc-drift or gain-step, and perhaps "
+    "@SECONDS; one or two of them";
 
 constexpr bool is_within(double value, double low, double high) noexcept {
   return value >= low && value <= high;
@@ -134,6 +135,31 @@ bool take_bench_truth(std::string_view text, ReportOptions& options) noexcept {
 bool take_bench_noise(std::string_view text, ReportOptions& options) noexcept {
   return take_number(text, options.bench.noise_v) &&
          is_within(options.bench.noise_v, 0.0, kMaxNoise_v);
+}
+
+// "V" or "V,HZ".
+bool take_bench_hum(std::string_view text, ReportOptions& options) noexcept {
+  const Numbers list = take_list(text);
+  if (!list.valid || list.count > 2 || !is_within(list.values[0], 0.0, kMaxNoise_v)) {
+    return false;
+  }
+  options.bench.hum_v = list.values[0];
+  options.bench.hum_hz = list.count == 2 ? list.values[1] : options.bench.hum_hz;
+  return is_within(options.bench.hum_hz, 0.0, 1000.0);
+}
+
+bool take_bench_ratio(std::string_view text, ReportOptions& options) noexcept {
+  return take_number(text, options.bench.ratio) && is_within(options.bench.ratio, 0.1, 10.0);
+}
+
+bool take_bench_skew(std::string_view text, ReportOptions& options) noexcept {
+  return take_number(text, options.bench.skew_s) &&
+         is_within(options.bench.skew_s, -kMaxSkew_s, kMaxSkew_s);
+}
+
+bool take_bench_drift(std::string_view text, ReportOptions& options) noexcept {
+  return take_number(text, options.bench.drift_expanded_percent) &&
+         is_within(options.bench.drift_expanded_percent, 0.0, kMaxDriftPercent);
 }
 
 bool take_fault(std::string_view text, sim::Fault& fault) {
@@ -291,12 +317,25 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
            take_bench_truth)
       .add("bench-noise", "VOLTS", "0.005", "a number of V from 0 to 1",
            "noise of each channel, rms, in V", take_bench_noise)
+      .add("bench-hum", "VOLTS[,HZ]", "0.0002,49.97", "0 to 1 V, and perhaps 0 to 1000 Hz",
+           "mains in each channel, and a third as much at three\n"
+           "times its frequency",
+           take_bench_hum)
+      .add("bench-drift", "PERCENT", "0.02", "a number of percent from 0 to 50",
+           "of the reference within the first 10 s, expanded", take_bench_drift)
+      .add("bench-ratio", "X", "1", "0.1 to 10",
+           "true gain of the device's channel over the\n"
+           "reference's, over the nominal one: see\n"
+           "--correction-ratio",
+           take_bench_ratio)
+      .add("bench-skew", "SECONDS", "1.25e-6", "seconds within 4e-6 of either sign",
+           "true skew of the channels: see --correction-skew", take_bench_skew)
       .add("bench-fault", "NAME[@SECONDS][,NAME[@SECONDS]]", "none", kExpectedFault,
            "what goes wrong, and when (default 3 s after the\n"
            "start; the sweep takes 6): lost-block, late-block,\n"
            "stuck-channel, saturation, unplugged-reference,\n"
            "unplugged-device, swapped-channels,\n"
-           "inverted-polarity, dc-drift",
+           "inverted-polarity, dc-drift, gain-step",
            take_bench_fault);
   return builder.options();
 }
