@@ -61,8 +61,8 @@ const char* explain(Status status) noexcept {
       return "The converter board reports a fault; check its supply and connections and start "
              "again.";
     case Status::kWeakSignal:
-      return "The signal stays too weak at the largest permitted drive; check amplifier, gain and "
-             "mounting.";
+      return "The signal is buried in noise at the level and drive permitted; raise the level, or "
+             "check amplifier, gains and mounting.";
     case Status::kLevelNotReached:
       return "The wanted acceleration needs more drive than is permitted; lower the level or raise "
              "the drive limit.";
@@ -75,8 +75,8 @@ const char* explain(Status status) noexcept {
       return "The reference channel carries no signal; check the reference sensor's cable and "
              "conditioner.";
     case Status::kNoDevice:
-      return "The channel of the device under test carries no signal; check its cable and "
-             "conditioner.";
+      return "The channel of the device under test carries no signal beyond its noise; check its "
+             "cable, its conditioner and the gain.";
     case Status::kSwappedChannels:
       return "The ratio of the channels is implausible, as if they were swapped; check the cables "
              "and the gains set.";
@@ -89,6 +89,10 @@ const char* explain(Status status) noexcept {
       return "The offset of a channel wanders; let the sensor and its conditioner warm up and "
              "check "
              "its cable and supply.";
+    case Status::kHum:
+      return "Hum of the mains is in the way; measure at other frequencies or in more cycles, or "
+             "find "
+             "the loop of its ground.";
     case Status::kNotProven:
       return "No upper bound passed its check for this device and time; shorten T, or use the "
              "energy found without a bound.";

@@ -350,6 +350,48 @@ TEST(Sweep, BesideASharpResonanceTheLevelIsLoweredOnce) {
   run.expect_limits_kept(default_sweep_settings());
 }
 
+TEST(Sweep, HumIsCalledHum) {
+  BenchSettings bench;
+  bench.hum_v = 0.05;
+  SweepSettings settings = default_sweep_settings();
+  settings.check_hz = 50.0;
+  SweepRun check(bench);
+  check.to_end(settings);
+  EXPECT_EQ(check.sweep.status, Status::kHum) << emax::explain(check.sweep.status);
+  EXPECT_EQ(check.sweep.failed_frequency_hz, 50.0);
+  // Of the point at 50 Hz it is a large part of the budget, as of that at 150 Hz.
+  SweepRun points(bench);
+  points.to_end(default_sweep_settings());
+  ASSERT_EQ(points.sweep.status, Status::kOk) << emax::explain(points.sweep.status);
+  for (const SweepPoint& point : points.sweep.points()) {
+    const std::complex<double> k = response_of(
+        bench.device, points.bench.truth().apparent_sensitivity, point.point.frequency_hz);
+    EXPECT_NEAR(point.point.amplitude, std::abs(k), 4.0 * point.point.u_amplitude);
+    EXPECT_EQ(point.point.frequency_hz == 50.0, point.budget.hum > 0.03);
+  }
+  EXPECT_TRUE(points.sweep.points()[2].flagged);
+}
+
+TEST(Sweep, NoiseIsNoFault) {
+  // A third of the signal and as much as it, and a signal of a tenth of it.
+  for (const double noise_v : {0.3, 1.0}) {
+    BenchSettings bench;
+    bench.noise_v = noise_v;
+    SweepRun run(bench);
+    run.to_end(default_sweep_settings());
+    EXPECT_EQ(run.sweep.status, Status::kOk) << emax::explain(run.sweep.status);
+  }
+  BenchSettings bench;
+  bench.noise_v = 0.1;
+  SweepSettings settings = default_sweep_settings();
+  settings.level_mps2 = 0.01;
+  SweepRun buried(bench);
+  buried.to_end(settings);
+  EXPECT_EQ(buried.sweep.status, Status::kWeakSignal) << emax::explain(buried.sweep.status);
+  EXPECT_NE(std::string(emax::explain(Status::kWeakSignal)).find("buried in noise"),
+            std::string::npos);
+}
+
 /// A sweep of a device of this resonance.
 void run_sharp(double natural_frequency_hz, double damping, void (*check)(const SweepRun&)) {
   BenchSettings bench;

@@ -49,6 +49,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kDelayNotResolved,  ///< What a delay leaves open is too large beside the error it is taken
                         ///< from.
     kLostDigits,        ///< Rounding is more than 1e-9 of the energy, in every form there is.
+    kHum,               ///< Mains at the frequency that is measured.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.

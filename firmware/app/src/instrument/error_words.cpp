@@ -30,6 +30,7 @@ constexpr FaultWords kFaults[] = {
      scpi::kQuestionableCalibration},
     {Status::kInvertedPolarity, "inverted polarity: swap its leads", scpi::kQuestionablePhase},
     {Status::kDistorted, "distorted: lower SOUR:LEV, check mount", scpi::kQuestionableCalibration},
+    {Status::kHum, "mains hum: change SWE:FREQ, SWE:CYCL", scpi::kQuestionableCalibration},
     {Status::kDcDrift, "DC drift: warm up, check its cable", scpi::kQuestionableVoltage},
 };
 

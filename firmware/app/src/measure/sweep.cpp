@@ -360,7 +360,7 @@ void Sweep::finish() noexcept {
         point_verdict(work.scatter_[i], point.point.frequency_hz, results.noise, inputs);
     point.budget = verdict.budget;
     point.residual_percent = static_cast<float>(verdict.residual_percent);
-    point.flagged = point.flagged || verdict.scatters;
+    point.flagged = point.flagged || verdict.scatters || verdict.budget.hum > kMuchHum;
     point.scatters = verdict.scatters;
     point.point.u_amplitude = verdict.relative_u * point.point.amplitude;
     point.point.u_phase_rad = verdict.relative_u;

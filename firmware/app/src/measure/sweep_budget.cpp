@@ -47,15 +47,16 @@ double chi_square_limit(double dof) noexcept {
   return step_v > 0.0 ? step_v / kSqrt12 * exp(-2.0 * kPi * kPi * steps2) : 0.0;
 }
 
-[[gnu::noinline]] double relative_hum(const PointScatter& p, double frequency_hz, double samples,
-                                      const BudgetInputs& inputs) noexcept {
+}  // namespace
+
+double relative_hum(const PointScatter& scatter, double frequency_hz, double samples,
+                    const BudgetInputs& inputs) noexcept {
   const double duration_s = samples / inputs.sample_rate_hz;
   return length(
-      inputs.silent_reference.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(p.reference)),
-      inputs.silent_device.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(p.device)));
+      inputs.silent_reference.hum_in_fit_v(frequency_hz, duration_s) /
+          sqrt(norm(scatter.reference)),
+      inputs.silent_device.hum_in_fit_v(frequency_hz, duration_s) / sqrt(norm(scatter.device)));
 }
-
-}  // namespace
 
 PointScatter scatter_of(const Repeats& repeats) noexcept {
   PointScatter p;
@@ -181,9 +182,12 @@ SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_h
   return shared;
 }
 
-double expected_scatter(const PointScatter& scatter, const BudgetInputs& inputs) noexcept {
-  return sqrt(ratio_variance(scatter, inputs.silent_reference.noise_v, inputs.silent_device.noise_v,
-                             scatter.repeat_samples));
+double expected_scatter(const PointScatter& scatter, double frequency_hz,
+                        const BudgetInputs& inputs) noexcept {
+  const double samples = scatter.repeat_samples;
+  return length(sqrt(ratio_variance(scatter, inputs.silent_reference.noise_v,
+                                    inputs.silent_device.noise_v, samples)),
+                relative_hum(scatter, frequency_hz, samples, inputs));
 }
 
 double distortion_of(double rest_v, double noise_v, double amplitude_v, double samples) noexcept {

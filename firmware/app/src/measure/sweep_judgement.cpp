@@ -25,6 +25,8 @@ constexpr double kLargestJump = 8.0;            // Of the ratio, from one freque
 constexpr std::uint32_t kMostRingingLooks = 2;  // After the first.
 constexpr double kRingingScale = 8.0;           // Of the settling time, for each of them,
 constexpr double kLookShare = 0.25;             // and of the drive, for the last.
+constexpr double kMostHum = 0.1;                // Of the ratio, at a point,
+constexpr double kMostHumOfCheck = 0.02;        // and at the check, which others are judged by.
 constexpr double kSwappedShare = 0.16;          // Of the squares of the distances to both.
 constexpr double kResonant = 0.3;               // Of 1/K that a device of second order would have,
 constexpr double kShortestBase = 0.1;           // Of the square of the frequency, for a slope.
@@ -75,6 +77,12 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
   const double samples = static_cast<double>(work_.target_.repeat_frames);
   Reading reading;
   reading.fit = fit;
+  // Hum is no distortion.
+  double rest2 = fit.residual_std_v * fit.residual_std_v;
+  for (const double hum_v : silent.hum_v) {
+    rest2 -= 0.5 * hum_v * hum_v;
+  }
+  reading.fit.residual_std_v = rest2 > 0.0 ? sqrt(rest2) : 0.0;
   reading.weak_v =
       kWeakSigmas * silent.noise_v * sqrt(2.0 / samples) +
       3.0 * silent.hum_in_fit_v(work_.target_.frequency_hz, samples / work_.format_.sample_rate_hz);
@@ -257,6 +265,13 @@ double Sweep::offset_change_v(double reference_v, double device_v) const noexcep
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 
+// What noise and hum make of the mean of a repeat.
+double Sweep::offset_doubt_v(const SilentChannel& silent) const noexcept {
+  const double samples = static_cast<double>(work_.target_.repeat_frames);
+  return kNoisePeak * (silent.noise_v / sqrt(samples) +
+                       silent.hum_in_fit_v(0.0, samples / work_.format_.sample_rate_hz));
+}
+
 Status Sweep::disturbance_of(const Reading& reference, const Reading& device) const noexcept {
   if (reference.is_weak()) {
     return device.is_weak() ? Status::kWeakSignal : Status::kNoReference;
@@ -271,8 +286,10 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
       offset_change_v(reference.fit.offset_v - results_.inputs.silent_reference.offset_v,
                       device.fit.offset_v - results_.inputs.silent_device.offset_v);
   // After overrange the ratio is in doubt; it is judged before anything else.
-  if (!work_.target_.was_overrange &&
-      (within_v > kWanderShare * full_scale_v || since_silence_v > kOffsetShare * full_scale_v)) {
+  const double doubt_v = offset_doubt_v(results_.inputs.silent_reference) +
+                         offset_doubt_v(results_.inputs.silent_device);
+  if (!work_.target_.was_overrange && (within_v > kWanderShare * full_scale_v + doubt_v ||
+                                       since_silence_v > kOffsetShare * full_scale_v + doubt_v)) {
     return Status::kDcDrift;
   }
   const double samples = static_cast<double>(work_.target_.repeat_frames);
@@ -333,25 +350,34 @@ Complex Sweep::ratio_of(Complex reference, Complex device) const noexcept {
 void Sweep::end_target() noexcept {
   PointScatter scatter = scatter_of(work_.repeats_);
   scatter.repeat_samples = static_cast<double>(work_.target_.repeat_frames);
-  const double by_noise = kNoisePeak * expected_scatter(scatter, results_.inputs);
+  const double frequency_hz = work_.target_.frequency_hz;
+  const double by_noise = kNoisePeak * expected_scatter(scatter, frequency_hz, results_.inputs);
   if (scatter.largest > by_noise + (work_.target_.looks > 1 ? kDistortedShare : kLooseShare)) {
     suspect(Status::kDistorted);
     return;
   }
   const double repeats = static_cast<double>(work_.repeats_.count);
+  const double hum =
+      relative_hum(scatter, frequency_hz, repeats * scatter.repeat_samples, results_.inputs);
+  if (hum > (results_.stage == SweepStage::kPoints ? kMostHum : kMostHumOfCheck)) {
+    fail(Status::kHum);
+    return;
+  }
   scatter.reference_rest_v = sqrt(work_.reference_rest2_ / repeats);
   scatter.device_rest_v = sqrt(work_.device_rest2_ / repeats);
   const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
-  const Status status = plausibility_of(ratio);
+  const bool is_hummed = hum > kMostHumOfCheck;
+  const Status status = is_hummed ? Status::kOk : plausibility_of(ratio);
   if (status != Status::kOk) {
     suspect(status);
     return;
   }
+  const Complex judged = is_hummed ? reciprocal(inverse_expected()) : ratio;
   work_.level_room_mps2_ = room_mps2(magnitude(scatter.reference), magnitude(scatter.device));
   if (results_.stage == SweepStage::kPoints) {
     store_point(scatter, ratio);
-    work_.last_ratio_ = ratio;
+    work_.last_ratio_ = judged;
   } else if (results_.stage == SweepStage::kCheckBefore) {
     results_.check_before = ratio;
   } else {

@@ -1,6 +1,7 @@
 // The report's section on the measurement, and the report of one that failed.
 #include "emax/app/report/measurement.hpp"
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
 
@@ -13,6 +14,7 @@ constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
 constexpr std::size_t kMaxLine = 98;
+constexpr double kReached = 0.9;  // Of the level.
 
 // Out of line, for its size.
 [[gnu::noinline]] double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
@@ -47,6 +49,30 @@ void wrap(ReportWriter& out, const char* words) noexcept {
   out.line();
 }
 
+// Full scale of a channel, or what a resonance makes of it, may not allow the level.
+void write_reached(const SweepResults& sweep, ReportWriter& out) noexcept {
+  double least = sweep.settings.level_mps2;
+  double most = 0.0;
+  std::size_t lowered = 0;
+  for (const SweepPoint& point : sweep.points()) {
+    const double reached = point.acceleration_mps2;
+    if (reached < kReached * sweep.settings.level_mps2) {
+      ++lowered;
+      least = reached < least ? reached : least;
+      most = reached > most ? reached : most;
+    }
+  }
+  if (lowered > 0) {
+    out.label("Level reached").general(least, 3).text(" to ").general(most, 3);
+    out.text(" m/s^2 only, at ").integer(lowered).text(" of ").integer(sweep.points().size());
+    out.text(" points: full scales or the limit allow no more").line();
+  }
+}
+
+void write_warning(Warning warning, ReportWriter& out) noexcept {
+  out.part(ReportPart::kWarning).text("  WARNING: ").text(words_of(warning)).text(".\n");
+}
+
 void write_settings(const Measurement& measurement, ReportWriter& out) noexcept {
   const SweepSettings& settings = measurement.sweep.settings;
   out.label("Bench");
@@ -58,6 +84,7 @@ void write_settings(const Measurement& measurement, ReportWriter& out) noexcept 
   out.and_g(settings.level_mps2, 6).text(" peak, never above ");
   out.general(settings.acceleration_limit_mps2, 6).text(" m/s^2");
   out.and_g(settings.acceleration_limit_mps2, 6).line();
+  write_reached(measurement.sweep, out);
   out.label("Drive").text("never above ").general(settings.drive_limit_v, 6).text(" V and ");
   out.general(settings.slew_v_per_s, 6).text(" V/s").line();
   out.label("Record").integer(settings.repeats).text(" repeats of at least ");
@@ -159,7 +186,10 @@ void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
       continue;
     }
     out.indent().general(point.point.frequency_hz, 7);
-    if (point.scatters) {
+    if (point.budget.hum > kMuchHum) {
+      out.text(" Hz: hum of the mains, u ").fixed(kPercent * point.budget.hum, 2);
+      out.text(" %; leave this frequency out").line();
+    } else if (point.scatters) {
       out.text(" Hz: the repeats differ by more than chance, u ");
       out.fixed(kPercent * point.budget.noise, 4).text(" % of the mean").line();
     } else {
@@ -308,6 +338,8 @@ const char* name_of_fault(Status status) noexcept {
       return "distorted response";
     case Status::kDcDrift:
       return "DC drift";
+    case Status::kHum:
+      return "mains hum";
     case Status::kStopped:
       return "stopped";
     case Status::kOk:
@@ -349,6 +381,11 @@ void write_measurement_section(const Measurement& measurement, ReportWriter& out
   write_check(sweep, out);
   out.label("Points measured").integer(sweep.points().size()).text(" of ");
   out.integer(sweep.settings.frequency_count).line();
+  for (const Warning warning : {Warning::kEnded, Warning::kDataSheet, Warning::kChange}) {
+    if (holds(warning, sweep)) {
+      write_warning(warning, out);
+    }
+  }
   write_flagged(sweep, out);
   write_common(sweep, out);
   write_budget(sweep, out);

@@ -100,6 +100,7 @@ class Sweep {
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   void raise_drive() noexcept;
   double offset_change_v(double reference_v, double device_v) const noexcept;
+  double offset_doubt_v(const SilentChannel& silent) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
   void end_target() noexcept;

@@ -25,6 +25,9 @@ struct PointBudget {
   double shared = 0.0;        ///< Amplitude's part of what all points share in their own ways.
 };
 
+/// A point with more hum is flagged.
+inline constexpr double kMuchHum = 0.01;
+
 /// What is common to all points: relative standard uncertainties.
 struct CommonBudget {
   double reference = 0.0;
@@ -115,9 +118,14 @@ CommonBudget common_budget(const SweepSettings& settings, double check_change) n
 SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_hz, double drift,
                              double factor, double highest_hz, double of_scale) noexcept;
 
-/// Relative standard deviation of each component of one repeat's ratio if the channels' noise is
-/// that without drive.
-double expected_scatter(const PointScatter& scatter, const BudgetInputs& inputs) noexcept;
+/// Relative standard deviation of each component of one repeat's ratio if the channels' noise and
+/// hum are those without drive.
+double expected_scatter(const PointScatter& scatter, double frequency_hz,
+                        const BudgetInputs& inputs) noexcept;
+
+/// Relative standard uncertainty of the ratio by hum, over so many samples.
+double relative_hum(const PointScatter& scatter, double frequency_hz, double samples,
+                    const BudgetInputs& inputs) noexcept;
 
 /// @returns What a fit over so many samples leaves over beyond noise, relative to the amplitude; 0
 /// within four standard deviations of what noise alone leaves.

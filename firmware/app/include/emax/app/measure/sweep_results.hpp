@@ -65,6 +65,7 @@ struct SweepResults {
   /// * kInvertedPolarity: A phase half a turn off.
   /// * kDistorted: What the sine leaves over, or the differences between repeats, beyond 10 %.
   /// * kDcDrift: An offset that wanders.
+  /// * kHum: Mains at the frequency, above 10 % of the ratio, at the check frequency above 2 %.
   /// * kStopped: `Sweep::stop()`.
   /// What disturbs a repeat is looked at twice: the frequency is measured again, once.
   Status status = Status::kOk;
