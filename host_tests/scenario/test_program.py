@@ -28,7 +28,7 @@ FAULTS = {
     "stuck-channel": ("stuck channel", "check its converter"),
     "saturation": ("saturated channel", "lower the conditioner's gain"),
     "unplugged-reference": ("no reference", "check the reference sensor's cable"),
-    "unplugged-device": ("no device", "device under test carries no signal; check its cable"),
+    "unplugged-device": ("no device", "device under test carries no signal beyond its noise; check its cable"),
     "swapped-channels": ("swapped channels", "check the cables"),
     "inverted-polarity": ("inverted polarity", "swap the sensor's leads"),
     "dc-drift": ("DC drift", "warm up"),
@@ -623,7 +623,20 @@ class Bench(ProgramTest):
 
     def test_fault_after_the_end_is_none(self):
         expected = self.succeed("report", *QUICK)
-        self.assertEqual(self.succeed("report", *QUICK, "--bench-fault", "dc-drift@1000"), expected)
+        result = self.run_program("report", *QUICK, "--bench-fault", "dc-drift@1000")
+        self.assertEqual((result.returncode, result.stdout.decode("ascii")), (0, expected))
+        self.assert_one_line(result.stderr, "dc-drift did not strike", "give an earlier time")
+
+    def test_sweep_that_a_fault_ends_late_is_fitted(self):
+        result = self.run_program("report", *QUICK, "--bench-fault", "unplugged-device@5", "--out", "out")
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "no device at", "(31 of 42 points kept, drive at zero)")
+        self.assertIn("WARNING: a fault has ended the sweep", result.stdout.decode("ascii"))
+        self.assertIn("MAXIMUM ENERGY", result.stdout.decode("ascii"))
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertEqual((results["bench"]["points"], results["bench"]["fault"]["name"]), (31, "no device"))
+        self.assertAlmostEqual(results["model"]["f0"], 4073, delta=3 * results["model"]["uf0"])
+        self.assertIn("a fault has ended the sweep", results["warnings"][-1]["text"])
 
 
 class ReferenceUncertainty(ProgramTest):

@@ -2,6 +2,7 @@
 #include "desk/report/bench_job.hpp"
 
 #include <cstddef>
+#include <cstdio>
 #include <string>
 
 #include "emax/base/status.hpp"
@@ -15,6 +16,8 @@ namespace {
 
 // Between two looks at the clock and at stop requests: less than a millisecond of work.
 constexpr int kBlocksPerLook = 64;
+// Of the frequencies asked for, at least, to be evaluated after a fault.
+constexpr std::size_t kShareOfRest = 2;
 
 std::string in_hz(double frequency_hz) {
   StringSink sink;
@@ -49,6 +52,7 @@ std::string in_line(std::string sentence) {
 }  // namespace
 
 Problem BenchJob::start(const ReportOptions& options) {
+  options_ = &options;
   simulated_ = {options.bench.seed,
                 {options.bench.device.sensitivity, options.bench.device.natural_frequency_hz,
                  options.bench.device.damping}};
@@ -63,6 +67,7 @@ Problem BenchJob::start(const ReportOptions& options) {
 }
 
 Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleProgress& progress) {
+  options_ = &options;
   InstrumentClient client;
   Problem problem = client.open(options.instrument);
   if (!problem) {
@@ -81,7 +86,8 @@ Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleP
   simulated_ = remote_.simulated;
   sequencer_.take(remote_.results);
   if (remote_.results.status != Status::kOk) {
-    return describe_sweep();
+    problem = describe_sweep();
+    return evaluate_rest() ? Problem{} : problem;
   }
   const app::Refusal refusal = sequencer_.evaluate(options.settings, app::Goal::kReport);
   const bool is_told = !refusal || refusal.obstacle == app::Obstacle::kEvaluation;
@@ -89,6 +95,27 @@ Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleP
 }
 
 Problem BenchJob::run(ConsoleProgress& progress) {
+  Problem problem = work(progress);
+  if (problem || !has_measured()) {
+    return problem;
+  }
+  const Problem fault_of_sweep = describe_sweep();
+  if (fault_of_sweep && !is_rest_ && evaluate_rest()) {
+    problem = work(progress);
+  }
+  return problem ? problem : fault_of_sweep;
+}
+
+// After half of the points a fault leaves a fit that is worth having.
+bool BenchJob::evaluate_rest() {
+  const app::SweepResults& sweep = sequencer_.sweep();
+  is_rest_ = sweep.status != Status::kStopped && options_ != nullptr &&
+             kShareOfRest * sweep.points().size() >= sweep.settings.frequency_count &&
+             !sequencer_.evaluate(options_->settings, app::Goal::kReport);
+  return is_rest_;
+}
+
+Problem BenchJob::work(ConsoleProgress& progress) {
   while (sequencer_.is_working()) {
     if (stop_requested()) {
       return stop();
@@ -101,7 +128,26 @@ Problem BenchJob::run(ConsoleProgress& progress) {
       sequencer_.step();
     }
   }
-  return has_measured() ? describe_sweep() : Problem{};
+  return {};
+}
+
+Problem BenchJob::unstruck() const {
+  if (is_remote_ || !has_measured()) {
+    return {};
+  }
+  std::string names;
+  for (const sim::Fault& fault : {bench_.settings().fault, bench_.settings().second_fault}) {
+    if (fault.kind != sim::FaultKind::kNone && fault.at_frame >= bench_.clock_frames()) {
+      names += (names.empty() ? "" : " and ") + std::string(sim::name_of(fault.kind));
+    }
+  }
+  if (names.empty()) {
+    return {};
+  }
+  char end_s[32];
+  (void)std::snprintf(end_s, sizeof end_s, "%.3f", bench_.now_s());
+  return {ExitStatus::kDone, names + " did not strike: the sweep has ended after " + end_s +
+                                 " s; give an earlier time to --bench-fault"};
 }
 
 Problem BenchJob::stop() {

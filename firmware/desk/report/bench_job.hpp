@@ -27,6 +27,8 @@ class BenchJob final {
   /// Works until nothing is left to do, or until it is asked to stop. However it ends, the drive is
   /// at zero.
   ///
+  /// A sweep that a fault has ended after half of its points is evaluated all the same.
+  ///
   /// @returns The fault of the sweep with its frequency and what to check, or that it was stopped,
   /// if so. Failures of the evaluation are left to the caller.
   Problem run(ConsoleProgress& progress);
@@ -38,6 +40,13 @@ class BenchJob final {
   Problem measure_with_instrument(const ReportOptions& options, ConsoleProgress& progress);
 
   app::Sequencer& sequencer() noexcept { return sequencer_; }
+  /// @returns Whether there is a result although a fault has ended the sweep.
+  bool has_result_of_rest() const noexcept {
+    return is_rest_ && sequencer_.evaluation().done() &&
+           sequencer_.evaluation().status() == Status::kOk;
+  }
+  /// @returns The scripted faults that the sweep's end came before, for its user; else nothing.
+  Problem unstruck() const;
   /// @returns Whether the sweep began at all.
   bool has_measured() const noexcept { return sequencer_.sweep().stage != app::SweepStage::kIdle; }
   /// Refers to this object.
@@ -48,13 +57,17 @@ class BenchJob final {
 
  private:
   Problem stop();
+  Problem work(ConsoleProgress& progress);
+  bool evaluate_rest();
   Problem describe_sweep() const;
 
   sim::SimBench bench_;
   app::Sequencer sequencer_;
   app::SimulatedBench simulated_;
   InstrumentSweep remote_;
+  const ReportOptions* options_ = nullptr;
   bool is_remote_ = false;
+  bool is_rest_ = false;
 };
 
 }  // namespace emax::desk

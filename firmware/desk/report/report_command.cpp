@@ -194,7 +194,8 @@ Problem run_report(Span<const std::string_view> arguments) {
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
     return give_sensitivity(results, options.json, files);
   }
-  if (problem_of_work) {
+  const bool is_of_rest = problem_of_work && bench.has_result_of_rest();
+  if (problem_of_work && !is_of_rest) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
     return keeps ? keep_and_report(problem_of_work, results, options.json, files) : problem_of_work;
   }
@@ -208,6 +209,12 @@ Problem run_report(Span<const std::string_view> arguments) {
   Problem problem = options.json ? print([&](app::TextWriter& out) { write_results(results, out); })
                                  : print([&](app::TextWriter& out) { write_text(results, out); });
   problem = unwritten ? unwritten : problem;
+  if (is_of_rest && !problem) {
+    return problem_of_work;
+  }
+  if (!problem && remark.line.empty()) {
+    remark = bench.unstruck();
+  }
   return problem ? problem : remark;
 }
 

@@ -46,8 +46,10 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const SimulatedBench kSimulated = {1, {1.037, 4073.0, 0.3182}};
 
 struct FinishedRun : SweepRun {
-  explicit FinishedRun(const BenchSettings& settings) : SweepRun(settings) {
-    to_end(emax::app::default_sweep_settings());
+  explicit FinishedRun(const BenchSettings& settings,
+                       const SweepSettings& wanted = emax::app::default_sweep_settings())
+      : SweepRun(settings) {
+    to_end(wanted);
   }
 };
 
@@ -284,7 +286,7 @@ TEST(Measurement, FaultKeepsThePointsBeforeIt) {
   expect_budget(report, run.sweep);
   EXPECT_TRUE(says(report, "NOT COMPLETE"));
   EXPECT_TRUE(says(report, "no device                 at "));
-  EXPECT_TRUE(says(report, "carries no signal; check its\n"));
+  EXPECT_TRUE(says(report, "carries no signal beyond its"));
   EXPECT_TRUE(says(report, "not measured after"));
   EXPECT_TRUE(says(report, "drift not known"));
   EXPECT_TRUE(says(report, std::to_string(count) + " of 42"));
@@ -373,6 +375,55 @@ TEST(Measurement, DistortedPointsAreNamed) {
   EXPECT_EQ(json.at("bench.flagged[]"), std::to_string(flagged));
 }
 
+/// The section on the measurement of this run, and results.json, of any evaluation.
+std::pair<std::string, std::string> texts_of(const SweepRun& run) {
+  static const EvaluationResults& evaluation = evaluated(good_run().sweep);
+  const Measurement measurement = measurement_of(run);
+  const emax::app::ReportContext context = {nullptr, &measurement};
+  return {text_of([&](TextWriter& out) { emax::app::write_report(evaluation, context, out); }),
+          text_of([&](TextWriter& out) { emax::app::write_json(evaluation, context, out); })};
+}
+
+TEST(Measurement, WhatContradictsIsSaid) {
+  constexpr const char* kSheet = "off its data sheet: check the gains";
+  constexpr const char* kChange = "a gain was switched or a mounting or cable is loose";
+  constexpr const char* kEnded = "a fault has ended the sweep";
+  const auto warns = [](const SweepRun& run, const char* words) {
+    const auto [report, json] = texts_of(run);
+    EXPECT_EQ(says(report, words), says(json, words));
+    return says(json, words);
+  };
+  for (const char* words : {kSheet, kChange, kEnded, "Level reached"}) {
+    EXPECT_FALSE(warns(good_run(), words));
+  }
+  SweepSettings settings = emax::app::default_sweep_settings();
+  for (const double factor : {0.5, 2.0}) {
+    settings.expected_sensitivity = factor * 1.037;
+    EXPECT_TRUE(warns(FinishedRun(BenchSettings(), settings), kSheet));
+  }
+  EXPECT_TRUE(warns(FinishedRun(bench_with(FaultKind::kGainStep, 300000)), kChange));
+  EXPECT_TRUE(warns(FinishedRun(bench_with(FaultKind::kUnpluggedDevice, 500000)), kEnded));
+}
+
+TEST(Measurement, LevelThatIsNotReachedIsSaid) {
+  SweepSettings settings = emax::app::default_sweep_settings();
+  settings.level_mps2 = 19.0;
+  const FinishedRun run(BenchSettings(), settings);
+  const auto [report, text] = texts_of(run);
+  const std::size_t at = report.find("Level reached ");
+  ASSERT_NE(at, std::string::npos);
+  // Half of 10 V over the device's 1.037 V/(m/s^2) at low frequencies, and over 1.75 at resonance.
+  double least = 0.0;
+  double most = 0.0;
+  ASSERT_EQ(std::sscanf(report.c_str() + at, "Level reached %lf to %lf m/s^2 only, at 42 of 42",
+                        &least, &most),
+            2);
+  EXPECT_NEAR(most, 5.0, 0.3);
+  EXPECT_NEAR(least, 5.0 / 1.75, 0.3);
+  const JsonReader json(text);
+  EXPECT_EQ(json.number("bench.budget[41][7]"), run.sweep.points()[41].acceleration_mps2);
+}
+
 TEST(Measurement, EachFaultHasItsName) {
   std::set<std::string> names;
   const Status faults[] = {
@@ -380,7 +431,7 @@ TEST(Measurement, EachFaultHasItsName) {
       Status::kSaturated,       Status::kStuckChannel,     Status::kNoReference,
       Status::kNoDevice,        Status::kWeakSignal,       Status::kLevelNotReached,
       Status::kSwappedChannels, Status::kInvertedPolarity, Status::kDistorted,
-      Status::kDcDrift,         Status::kStopped};
+      Status::kDcDrift,         Status::kStopped,          Status::kHum};
   for (const Status fault : faults) {
     names.insert(emax::app::name_of_fault(fault));
   }

@@ -27,7 +27,8 @@ double power_of_ten(int exponent) noexcept {
 constexpr Warning kMarking[] = {
     Warning::kFit,           Warning::kOpenDamping, Warning::kDisagreement, Warning::kLowFrequency,
     Warning::kShortTime,     Warning::kGuard,       Warning::kCrowded,      Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kMeasurement};
+    Warning::kNoUncertainty, Warning::kMeasurement, Warning::kEnded,        Warning::kDataSheet,
+    Warning::kChange};
 
 bool is_marked(const EvaluationResults& results, const ReportContext& context) noexcept {
   bool any = false;
@@ -131,11 +132,11 @@ void write_papers_rows(const EvaluationResults& results, bool is_marked,
     const EnergyUncertainty& known = results.uncertainty;
     const bool has_u = known.exists() && is_finite(known.u_percent);
     const bool is_error = criterion == Criterion::kIntegralSquareError;
-    write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
-               is_marked, results.percent_of(energy),
-               has_u ? kCoverageFactor * known.u_percent : 0.0, results.has_bound,
-               results.percent_of(results.bound_v2s)},
-              out);
+    write_row(
+        {is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)", is_marked,
+         results.percent_of(energy), has_u ? kCoverageFactor * known.u_percent : 0.0,
+         results.has_bound, results.percent_of(results.bound_v2s)},
+        out);
   }
   if (results.ideal.exists() &&
       (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {

@@ -151,7 +151,7 @@ void write_budget(const SweepResults& sweep, JsonWriter& json) noexcept {
     const double row[] = {point.point.frequency_hz,  point.budget.noise,
                           point.budget.quantisation, point.budget.hum,
                           point.budget.distortion,   point.point.u_phase_rad,
-                          point.budget.shared};
+                          point.budget.shared,       point.acceleration_mps2};
     json.open_row(nullptr);
     for (const double value : row) {
       json.number(nullptr, value);

@@ -9,6 +9,8 @@ namespace emax::app {
 namespace {
 
 constexpr std::uint32_t kOnePercent = 100;
+constexpr double kMuchChange = 0.01;
+constexpr double kNearSheet = 1.2;
 
 bool fit_warns(const EvaluationResults& results) noexcept {
   const WlspFit& fit = results.fit.result();
@@ -67,6 +69,18 @@ bool guards_disagree(const EvaluationResults& results) noexcept {
          results.matched.uncertainty.guard.disagreements > 0;
 }
 
+bool holds(Warning warning, const SweepResults& sweep) noexcept {
+  if (warning == Warning::kEnded) {
+    return sweep.status != Status::kOk;
+  }
+  if (warning == Warning::kChange) {
+    return sweep.shared.drift > kMuchChange;
+  }
+  const double off = sqrt(norm(sweep.check_before)) / sweep.settings.expected_sensitivity;
+  return warning == Warning::kDataSheet && sweep.settings.expected_sensitivity > 0.0 && off > 0.0 &&
+         !(off < kNearSheet && off * kNearSheet > 1.0);
+}
+
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept {
   const EnergyUncertainty& known = results.uncertainty;
@@ -102,6 +116,10 @@ bool holds(Warning warning, const EvaluationResults& results,
       return are_rough(results);
     case Warning::kMeasurement:
       return has_flags(context);
+    case Warning::kEnded:
+    case Warning::kDataSheet:
+    case Warning::kChange:
+      return context.measurement != nullptr && holds(warning, context.measurement->sweep);
   }
   return false;
 }
@@ -129,6 +147,9 @@ const char* about(Warning warning) noexcept {
     case Warning::kRough:
       return "uncertainty";
     case Warning::kMeasurement:
+    case Warning::kEnded:
+    case Warning::kDataSheet:
+    case Warning::kChange:
       break;
   }
   return "measurement";
@@ -155,6 +176,9 @@ ReportSection place_of(Warning warning) noexcept {
     case Warning::kRough:
       return ReportSection::kUncertainty;
     case Warning::kMeasurement:
+    case Warning::kEnded:
+    case Warning::kDataSheet:
+    case Warning::kChange:
       break;
   }
   return ReportSection::kMeasurement;
@@ -205,6 +229,13 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kRough:
       return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
              "second digit; give a shorter T or smaller uncertainties";
+    case Warning::kEnded:
+      return "a fault has ended the sweep; the results rest on the points before it";
+    case Warning::kDataSheet:
+      return "the device is 20 % or more off its data sheet: check the gains and the reference's "
+             "sensitivity";
+    case Warning::kChange:
+      return "the check's ratio has changed: a gain was switched or a mounting or cable is loose";
     case Warning::kMeasurement:
       break;
   }

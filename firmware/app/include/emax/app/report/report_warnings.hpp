@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/report/report_context.hpp"
 
 namespace emax::app {
@@ -25,19 +26,26 @@ enum class Warning : std::uint8_t {
   kNoUncertainty,  ///< The draws for the uncertainty of E have failed.
   kRough,          ///< Trials by polynomials are off by more than kMostRough.
   kMeasurement,    ///< Points are flagged.
+  kEnded,          ///< A fault has ended the sweep.
+  kDataSheet,      ///< The sensitivity at the check frequency is 20 % off the data sheet's.
+  kChange,         ///< The check frequency's ratio has changed by 1 %, beyond its noise.
 };
 
 inline constexpr Warning kWarnings[] = {
     Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
     Warning::kLowFrequency,  Warning::kShortTime,   Warning::kFewTrials,     Warning::kNotStable,
     Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn, Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,
+    Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,   Warning::kEnded,
+    Warning::kDataSheet,     Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
 /// ReportPart::kWarning on it, and results.json a line.
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept;
+
+/// The same of those on the measurement alone: false for all others.
+bool holds(Warning warning, const SweepResults& sweep) noexcept;
 
 /// @returns "fit", "damping", "fit_draws", "energy", "monte_carlo", "uncertainty" or
 /// "measurement".
