@@ -82,7 +82,7 @@ const char* explain(Status status) noexcept {
              "and the gains set.";
     case Status::kDistorted:
       return "The response is not a sine at the drive's frequency; lower the level, check the "
-             "mounting and leave out what excites a sharp resonance.";
+             "mounting, or leave out what excites a resonance.";
     case Status::kStopped:
       return "The measurement was stopped on request; start it again when ready.";
     case Status::kDcDrift:
@@ -90,9 +90,7 @@ const char* explain(Status status) noexcept {
              "check "
              "its cable and supply.";
     case Status::kHum:
-      return "Hum of the mains is in the way; measure at other frequencies or in more cycles, or "
-             "find "
-             "the loop of its ground.";
+      return "Hum of the mains is too strong here; measure at other frequencies or more cycles.";
     case Status::kNotProven:
       return "No upper bound passed its check for this device and time; shorten T, or use the "
              "energy found without a bound.";

@@ -38,7 +38,6 @@ void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& sc
   reference_monitor_ = ChannelMonitor();
   device_monitor_ = ChannelMonitor();
   target_ = SweepWorkspace::Target();
-  last_ratio_ = Complex();
   drive_per_acceleration_ = 0.0;
   level_scale_ = 1.0;
   level_room_mps2_ = std::numeric_limits<double>::infinity();
@@ -263,13 +262,12 @@ double Sweep::aim_mps2() const noexcept {
 // A sharp resonance ahead takes the device's channel to full scale, and it needs periods to ring
 // up.
 void Sweep::foresee_resonance() noexcept {
-  const double flat = 1.0 / sqrt(norm(results_.check_before));
-  const double foreseen = sqrt(norm(inverse_expected()));
-  const double least = std::max(foreseen, kSharpest * flat);
-  work_.target_.periods = std::max(kSettlePeriods, kRingingPeriods * flat / least);
-  const double room_mps2 = acceleration_of(
-      std::min(work_.scales_.reference_v, work_.scales_.device_v * ratio_factor() * least));
-  work_.level_room_mps2_ = std::max(room_mps2, kLeastRoom * results_.settings.level_mps2);
+  const double flat2 = norm(results_.check_before);
+  const double share = sqrt(std::max(norm(inverse_expected()) * flat2, kSharpest * kSharpest));
+  work_.target_.periods = std::max(kSettlePeriods, kRingingPeriods / share);
+  const double device_v = work_.scales_.device_v * ratio_factor() * share / sqrt(flat2);
+  work_.level_room_mps2_ = std::max(acceleration_of(std::min(work_.scales_.reference_v, device_v)),
+                                    kLeastRoom * results_.settings.level_mps2);
 }
 
 void Sweep::begin_target(double frequency_hz) noexcept {

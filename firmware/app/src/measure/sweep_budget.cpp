@@ -18,8 +18,12 @@ constexpr double kNormalQuantile = 3.0902323061678132;  // 0.1 % lie beyond.
 // Out of line, for its size.
 [[gnu::noinline]] double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
 
+[[gnu::noinline]] Complex deviation(const Complex& value, const Complex& mean) noexcept {
+  return (value - mean) / mean;
+}
+
 // Re(a conj(b)).
-[[gnu::noinline]] double projected(Complex a, Complex b) noexcept {
+[[gnu::noinline]] double projected(const Complex& a, const Complex& b) noexcept {
   return a.re * b.re + a.im * b.im;
 }
 
@@ -47,6 +51,19 @@ double chi_square_limit(double dof) noexcept {
   return step_v > 0.0 ? step_v / kSqrt12 * exp(-2.0 * kPi * kPi * steps2) : 0.0;
 }
 
+/// Places of the period that a repeat of whole periods looks at: its samples over what both numbers
+/// have in common.
+double different_samples(double repeat_samples, double periods_per_sample) noexcept {
+  auto samples = static_cast<std::uint32_t>(repeat_samples);
+  auto periods = static_cast<std::uint32_t>(repeat_samples * periods_per_sample + 0.5);
+  while (periods > 0) {
+    const std::uint32_t rest = samples % periods;
+    samples = periods;
+    periods = rest;
+  }
+  return repeat_samples / static_cast<double>(samples);
+}
+
 }  // namespace
 
 double relative_hum(const PointScatter& scatter, double frequency_hz, double samples,
@@ -67,13 +84,13 @@ PointScatter scatter_of(const Repeats& repeats) noexcept {
     p.device = p.device + share * repeats.device[k];
   }
   for (std::uint32_t k = 0; k < repeats.count; ++k) {
-    const Complex r = (repeats.reference[k] - p.reference) / p.reference;
-    const Complex a = (repeats.device[k] - p.device) / p.device;
+    const Complex r = deviation(repeats.reference[k], p.reference);
+    const Complex a = deviation(repeats.device[k], p.device);
     const Complex e = a - r;
     p.reference_sum -= projected(r, e);
     p.device_sum += projected(a, e);
     p.ratio_sum += norm(e);
-    p.largest = larger(p.largest, sqrt(norm(e)));
+    p.largest = larger(p.largest, length(e.re, e.im));
   }
   return p;
 }
@@ -123,10 +140,10 @@ PointVerdict point_verdict(const PointScatter& scatter, double frequency_hz,
       pooled + hum_in_repeats * hum_in_repeats / static_cast<double>(scatter.repeats);
   verdict.scatters = own > explained * chi_square_limit(dof);
   budget.noise = sqrt(verdict.scatters ? own : pooled);
-  // Repeats of a drive that repeats itself are rounded alike: they take no part in the mean, nor do
-  // periods, and only noise makes the steps of a converter small.
-  const double period = inputs.sample_rate_hz / frequency_hz;
-  const double different = period < scatter.repeat_samples ? period : scatter.repeat_samples;
+  // Samples at the same place of the period are rounded alike: they take no part in the mean, nor
+  // do repeats, and only noise makes the steps of a converter small.
+  const double different =
+      different_samples(scatter.repeat_samples, frequency_hz / inputs.sample_rate_hz);
   budget.quantisation =
       sqrt(ratio_variance(scatter, rounding_v(inputs.reference_step_v, noise.reference_v),
                           rounding_v(inputs.device_step_v, noise.device_v), different));

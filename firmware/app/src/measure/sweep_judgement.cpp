@@ -15,22 +15,23 @@ constexpr double kContradiction = 0.67;   // Of what the device saw per drive be
 constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
 constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
 constexpr std::uint32_t kMaxTries = 12;
-constexpr double kLooseShare = 0.01;            // Repeats that differ by more are taken again.
-constexpr double kDistortedShare = 0.1;         // An error above,
-constexpr double kFlaggedShare = 0.03;          // flagged above.
-constexpr double kOffsetShare = 0.02;           // Of full scale, against the silence.
-constexpr double kTurnedRound = 0.9;            // Cosine of the angle to half a turn,
-constexpr double kFlatWithin = 1.2;             // and the largest factor to the check's ratio.
-constexpr double kLargestJump = 8.0;            // Of the ratio, from one frequency to the next.
+constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
+constexpr double kDistortedShare = 0.1;  // An error above,
+constexpr double kFlaggedShare = 0.03;   // flagged above.
+constexpr double kOffsetShare = 0.02;    // Of full scale, against the silence.
+constexpr double kTurnedRound = 0.9;     // Cosine of the angle to half a turn,
+constexpr double kFlatWithin = 1.2;      // and the largest factor to the check's ratio.
+constexpr double kLargestJump2 =
+    64.0;  // Of the square of the ratio, from one frequency to the next.
 constexpr std::uint32_t kMostRingingLooks = 2;  // After the first.
 constexpr double kRingingScale = 8.0;           // Of the settling time, for each of them,
 constexpr double kLookShare = 0.25;             // and of the drive, for the last.
 constexpr double kMostHum = 0.1;                // Of the ratio, at a point,
 constexpr double kMostHumOfCheck = 0.02;        // and at the check, which others are judged by.
 constexpr double kSwappedShare = 0.16;          // Of the squares of the distances to both.
-constexpr double kResonant = 0.3;               // Of 1/K that a device of second order would have,
+constexpr double kForeseen = 0.09;              // Square of a share of the 1/K that is expected,
 constexpr double kShortestBase = 0.1;           // Of the square of the frequency, for a slope.
-constexpr double kResonantFlat = 0.01;          // and of that at the check frequency.
+constexpr double kForeseenFlat = 1e-4;          // and of that at the check frequency.
 
 // A device of second order never leads. Sensors with a high pass do, by less than a degree where
 // it matters; a skew that was set wrong by 1 us adds to it.
@@ -38,7 +39,13 @@ constexpr double kLead_rad = 0.0175;
 constexpr double kLeadPerHz_rad = 6.3e-6;
 
 // Out of line, for their size.
-[[gnu::noinline]] double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
+[[gnu::noinline]] double square_of(const Complex& z) noexcept { return norm(z); }
+[[gnu::noinline]] double magnitude(const Complex& z) noexcept { return sqrt(square_of(z)); }
+
+[[gnu::noinline]] double distance2(const Complex& a, const Complex& b) noexcept {
+  return square_of(a - b);
+}
+[[gnu::noinline]] Complex inverse_of(const Complex& z) noexcept { return reciprocal(z); }
 
 [[gnu::noinline]] bool is_beyond(double ratio, double factor) noexcept {
   return !(ratio < factor) || !(ratio * factor > 1.0);
@@ -49,10 +56,10 @@ constexpr double kLeadPerHz_rad = 6.3e-6;
 /// @param ratio    Measured.
 /// @param expected From the frequency before, or from the data sheet.
 /// @param swapped  What exchanged channels would give.
-Status cables_of(Complex ratio, Complex expected, Complex swapped) noexcept {
-  const double to_inverted = magnitude(ratio + expected) / magnitude(expected);
-  const double to_swapped = magnitude(ratio - swapped) / magnitude(swapped);
-  return to_inverted < to_swapped ? Status::kInvertedPolarity : Status::kSwappedChannels;
+Status cables_of(const Complex& ratio, const Complex& expected, const Complex& swapped) noexcept {
+  const double to_inverted2 = distance2(ratio, -expected) * square_of(swapped);
+  const double to_swapped2 = distance2(ratio, swapped) * square_of(expected);
+  return to_inverted2 < to_swapped2 ? Status::kInvertedPolarity : Status::kSwappedChannels;
 }
 
 }  // namespace
@@ -60,7 +67,8 @@ Status cables_of(Complex ratio, Complex expected, Complex swapped) noexcept {
 /// What one repeat's fit says of one channel.
 struct Sweep::Reading {
   SineFitResult fit;
-  double weak_v = 0.0;  // Below this it may be noise.
+  double weak_v = 0.0;   // Below this it may be noise.
+  double doubt_v = 0.0;  // What noise and hum make of its mean.
   bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
   bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
   // The phase is good to 0.15 degrees.
@@ -77,15 +85,17 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
   const double samples = static_cast<double>(work_.target_.repeat_frames);
   Reading reading;
   reading.fit = fit;
-  // Hum is no distortion.
-  double rest2 = fit.residual_std_v * fit.residual_std_v;
+  double hum2 = 0.0;
   for (const double hum_v : silent.hum_v) {
-    rest2 -= 0.5 * hum_v * hum_v;
+    hum2 += hum_v * hum_v;
   }
+  // Hum is no distortion.
+  const double rest2 = fit.residual_std_v * fit.residual_std_v - 0.5 * hum2;
   reading.fit.residual_std_v = rest2 > 0.0 ? sqrt(rest2) : 0.0;
   reading.weak_v =
       kWeakSigmas * silent.noise_v * sqrt(2.0 / samples) +
       3.0 * silent.hum_in_fit_v(work_.target_.frequency_hz, samples / work_.format_.sample_rate_hz);
+  reading.doubt_v = reading.weak_v + 2.0 * sqrt(hum2);
   return reading;
 }
 
@@ -259,17 +269,10 @@ void Sweep::raise_drive() noexcept {
 // By how much the offsets have moved apart. A slow swing of the shaker moves both, in the ratio of
 // low frequencies.
 double Sweep::offset_change_v(double reference_v, double device_v) const noexcept {
-  const double ratio = norm(results_.check_before) > 0.0
+  const double ratio = square_of(results_.check_before) > 0.0
                            ? magnitude(results_.check_before) / ratio_factor()
                            : work_.device_fit().amplitude_v / work_.fit_.reference().amplitude_v;
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
-}
-
-// What noise and hum make of the mean of a repeat.
-double Sweep::offset_doubt_v(const SilentChannel& silent) const noexcept {
-  const double samples = static_cast<double>(work_.target_.repeat_frames);
-  return kNoisePeak * (silent.noise_v / sqrt(samples) +
-                       silent.hum_in_fit_v(0.0, samples / work_.format_.sample_rate_hz));
 }
 
 Status Sweep::disturbance_of(const Reading& reference, const Reading& device) const noexcept {
@@ -286,8 +289,7 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
       offset_change_v(reference.fit.offset_v - results_.inputs.silent_reference.offset_v,
                       device.fit.offset_v - results_.inputs.silent_device.offset_v);
   // After overrange the ratio is in doubt; it is judged before anything else.
-  const double doubt_v = offset_doubt_v(results_.inputs.silent_reference) +
-                         offset_doubt_v(results_.inputs.silent_device);
+  const double doubt_v = reference.doubt_v + device.doubt_v;
   if (!work_.target_.was_overrange && (within_v > kWanderShare * full_scale_v + doubt_v ||
                                        since_silence_v > kOffsetShare * full_scale_v + doubt_v)) {
     return Status::kDcDrift;
@@ -341,7 +343,7 @@ double Sweep::ratio_factor() const noexcept {
          (results_.settings.device_gain * results_.settings.ratio_correction);
 }
 
-Complex Sweep::ratio_of(Complex reference, Complex device) const noexcept {
+Complex Sweep::ratio_of(const Complex& reference, const Complex& device) const noexcept {
   // Sampled later, the device's channel is ahead by w skew.
   const SinCos skew = sincos(kTwoPi * work_.target_.frequency_hz * results_.settings.skew_s);
   return ratio_factor() * ((device / reference) * Complex{skew.cos, -skew.sin});
@@ -367,62 +369,56 @@ void Sweep::end_target() noexcept {
   scatter.device_rest_v = sqrt(work_.device_rest2_ / repeats);
   const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
-  const bool is_hummed = hum > kMostHumOfCheck;
-  const Status status = is_hummed ? Status::kOk : plausibility_of(ratio);
+  const bool is_judged = hum <= kMostHumOfCheck;
+  const Status status = is_judged ? plausibility_of(ratio) : Status::kOk;
   if (status != Status::kOk) {
     suspect(status);
     return;
   }
-  const Complex judged = is_hummed ? reciprocal(inverse_expected()) : ratio;
   work_.level_room_mps2_ = room_mps2(magnitude(scatter.reference), magnitude(scatter.device));
   if (results_.stage == SweepStage::kPoints) {
     store_point(scatter, ratio);
-    work_.last_ratio_ = judged;
   } else if (results_.stage == SweepStage::kCheckBefore) {
     results_.check_before = ratio;
   } else {
     results_.check_after = ratio;
     work_.check_scatter_ = scatter;
   }
+  if (is_judged) {
+    work_.last_ratio_ = ratio;
+    work_.last_hz_ = frequency_hz;
+  }
   begin_next();
 }
 
 // Half a turn between neighbours, both as large as at the check frequency: a resonance between them
 // would have made one of them larger, unless they are far apart.
-bool Sweep::has_turned_round(Complex ratio, Complex before) const noexcept {
+bool Sweep::has_turned_round(const Complex& ratio, const Complex& before) const noexcept {
   const double flat = magnitude(results_.check_before);
-  const std::size_t count = results_.point_count;
+  const double size = magnitude(ratio);
+  const double size_before = magnitude(before);
   // The check frequency is far below the resonance, and so is what lies below it.
-  const double first_hz = work_.target_.frequency_hz < results_.settings.check_hz
-                              ? work_.target_.frequency_hz
-                              : results_.settings.check_hz;
-  const double before_hz = count > 0 ? results_.settings.frequency_hz[count - 1] : first_hz;
-  const double along = ratio.re * before.re + ratio.im * before.im;
-  return along < -kTurnedRound * magnitude(ratio) * magnitude(before) &&
-         !is_beyond(magnitude(ratio) / flat, kFlatWithin) &&
-         !is_beyond(magnitude(before) / flat, kFlatWithin) &&
-         !is_beyond(work_.target_.frequency_hz / before_hz, kPlausibleFactor);
+  const double frequency_hz = work_.target_.frequency_hz;
+  const double before_hz = frequency_hz < work_.last_hz_ ? frequency_hz : work_.last_hz_;
+  return ratio.re * before.re + ratio.im * before.im < -kTurnedRound * size * size_before &&
+         !is_beyond(size / flat, kFlatWithin) && !is_beyond(size_before / flat, kFlatWithin) &&
+         !is_beyond(frequency_hz / before_hz, kPlausibleFactor);
 }
 
 // What check and last frequency let expect of a device of second order: of its 1/K the real part is
 // linear in the square of the frequency, and the imaginary part in the frequency.
 Complex Sweep::inverse_expected() const noexcept {
-  const Complex flat = reciprocal(results_.check_before);
-  const std::size_t count = results_.point_count;
-  if (count == 0) {
-    return flat;
-  }
-  const Complex before = reciprocal(work_.last_ratio_);
-  const double before_hz = results_.settings.frequency_hz[count - 1];
-  const double step = work_.target_.frequency_hz / before_hz;
-  const double check = results_.settings.check_hz / before_hz;
+  const Complex before = inverse_of(work_.last_ratio_);
+  const double step = work_.target_.frequency_hz / work_.last_hz_;
+  const double check = results_.settings.check_hz / work_.last_hz_;
   const double base = 1.0 - check * check;
   // Too near one another, they tell no slope.
-  const double slope = abs(base) > kShortestBase ? (before.re - flat.re) / base : 0.0;
+  const double slope =
+      abs(base) > kShortestBase ? (before.re - inverse_of(results_.check_before).re) / base : 0.0;
   return {before.re + slope * (step * step - 1.0), step * before.im};
 }
 
-Status Sweep::plausibility_of(Complex ratio) const noexcept {
+Status Sweep::plausibility_of(const Complex& ratio) const noexcept {
   const bool is_check = results_.stage != SweepStage::kPoints;
   const double factor = ratio_factor();
   const double sheet = results_.settings.expected_sensitivity;
@@ -430,49 +426,43 @@ Status Sweep::plausibility_of(Complex ratio) const noexcept {
   if (results_.stage == SweepStage::kCheckAfter) {
     expected = results_.check_before;
   } else if (!is_check) {
-    expected = norm(work_.last_ratio_) > 0.0 ? work_.last_ratio_ : results_.check_before;
+    const Complex inverse = inverse_expected();
+    const bool is_foreseen =
+        distance2(inverse_of(ratio), inverse) <
+        kForeseen * square_of(inverse) + kForeseenFlat / square_of(results_.check_before);
+    expected = is_foreseen ? inverse_of(inverse) : work_.last_ratio_;
   }
   // Exchanged channels turn V_a/V_r, which is ratio/factor, into its inverse.
-  Complex swapped = Complex{factor * factor, 0.0} / expected;
-  const double jump = magnitude(ratio) / magnitude(expected);
-  const Complex inverse = inverse_expected();
-  const bool is_foreseen = !is_check && magnitude(reciprocal(ratio) - inverse) <
-                                            kResonant * magnitude(inverse) +
-                                                kResonantFlat / magnitude(results_.check_before);
-  if (work_.target_.was_overrange && !is_foreseen &&
-      is_beyond(jump, is_check ? kPlausibleFactor : kLargestJump)) {
+  const Complex swapped = factor * factor * inverse_of(expected);
+  const double expected2 = square_of(expected);
+  const double jump2 = square_of(ratio) / expected2;
+  constexpr double kPlausible2 = kPlausibleFactor * kPlausibleFactor;
+  if (work_.target_.was_overrange && is_beyond(jump2, is_check ? kPlausible2 : kLargestJump2)) {
     return Status::kSaturated;
   }
-  if (is_check && is_beyond(jump, kPlausibleFactor)) {
+  if (is_check && is_beyond(jump2, kPlausible2)) {
     return Status::kSwappedChannels;
   }
-  if (is_foreseen) {
-    expected = reciprocal(inverse);
-    swapped = factor * factor * inverse;
-  }
-  // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
-  const double to_expected2 = norm(ratio - expected);
-  if (!is_check && norm(ratio - swapped) * magnitude(expected) <
-                       kSwappedShare * to_expected2 * magnitude(swapped)) {
-    return cables_of(ratio, expected, swapped);
-  }
-  if (!is_check && has_turned_round(ratio, expected)) {
-    return cables_of(ratio, expected, swapped);
-  }
+  const double to_expected2 = distance2(ratio, expected);
   const double phase = atan2(ratio.im, ratio.re);
+  bool is_wrong = false;
+  if (is_check) {
+    // The check frequency is far below the resonance, where the lag is small.
+    is_wrong = phase < -0.5 * kPi;
+  } else {
+    // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
+    is_wrong =
+        distance2(ratio, swapped) * expected2 < kSwappedShare * to_expected2 * factor * factor ||
+        has_turned_round(ratio, expected);
+  }
   // Past half a turn of lag the phase begins again at the top.
-  const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * norm(expected);
-  if (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz && !went_on) {
-    return cables_of(ratio, expected, swapped);
-  }
-  // The check frequency is far below the resonance, where the lag is small.
-  if (is_check && phase < -0.5 * kPi) {
-    return cables_of(ratio, expected, swapped);
-  }
-  return Status::kOk;
+  const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * expected2;
+  is_wrong =
+      is_wrong || (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz && !went_on);
+  return is_wrong ? cables_of(ratio, expected, swapped) : Status::kOk;
 }
 
-void Sweep::store_point(const PointScatter& scatter, Complex ratio) noexcept {
+void Sweep::store_point(const PointScatter& scatter, const Complex& ratio) noexcept {
   SweepPoint& point = results_.table[results_.point_count];
   work_.scatter_[results_.point_count] = scatter;
   point = SweepPoint();

@@ -19,6 +19,10 @@ constexpr double kReached = 0.9;  // Of the level.
 // Out of line, for its size.
 [[gnu::noinline]] double magnitude(Complex z) noexcept { return sqrt(norm(z)); }
 
+[[gnu::noinline]] TextWriter& percent(TextWriter& out, double share) noexcept {
+  return out.fixed(kPercent * share, 4);
+}
+
 /// The standard uncertainty of the amplitude with the common part.
 double total_u(const SweepPoint& point, const CommonBudget& common) noexcept {
   const double shared = common.total * point.point.amplitude;
@@ -51,26 +55,18 @@ void wrap(ReportWriter& out, const char* words) noexcept {
 
 // Full scale of a channel, or what a resonance makes of it, may not allow the level.
 void write_reached(const SweepResults& sweep, ReportWriter& out) noexcept {
-  double least = sweep.settings.level_mps2;
-  double most = 0.0;
+  double least = kReached * sweep.settings.level_mps2;
   std::size_t lowered = 0;
   for (const SweepPoint& point : sweep.points()) {
-    const double reached = point.acceleration_mps2;
-    if (reached < kReached * sweep.settings.level_mps2) {
+    if (point.acceleration_mps2 < kReached * sweep.settings.level_mps2) {
       ++lowered;
-      least = reached < least ? reached : least;
-      most = reached > most ? reached : most;
+      least = point.acceleration_mps2 < least ? point.acceleration_mps2 : least;
     }
   }
   if (lowered > 0) {
-    out.label("Level reached").general(least, 3).text(" to ").general(most, 3);
-    out.text(" m/s^2 only, at ").integer(lowered).text(" of ").integer(sweep.points().size());
-    out.text(" points: full scales or the limit allow no more").line();
+    out.label("Level reached").text("less at ").integer(lowered).text(" points, down to ");
+    out.general(least, 3).text(" m/s^2: full scale or the limit is near").line();
   }
-}
-
-void write_warning(Warning warning, ReportWriter& out) noexcept {
-  out.part(ReportPart::kWarning).text("  WARNING: ").text(words_of(warning)).text(".\n");
 }
 
 void write_settings(const Measurement& measurement, ReportWriter& out) noexcept {
@@ -167,7 +163,7 @@ void write_check(const SweepResults& sweep, ReportWriter& out) noexcept {
   }
   out.text(", ").general(after, 6);
   out.and_v_per_g(after, 6).text(" after: ");
-  out.fixed(kPercent * (after / before - 1.0), 4).text(" % drift").line();
+  percent(out, after / before - 1.0).text(" % drift").line();
 }
 
 void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
@@ -186,12 +182,11 @@ void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
       continue;
     }
     out.indent().general(point.point.frequency_hz, 7);
-    if (point.budget.hum > kMuchHum) {
-      out.text(" Hz: hum of the mains, u ").fixed(kPercent * point.budget.hum, 2);
-      out.text(" %; leave this frequency out").line();
-    } else if (point.scatters) {
-      out.text(" Hz: the repeats differ by more than chance, u ");
-      out.fixed(kPercent * point.budget.noise, 4).text(" % of the mean").line();
+    const bool is_hum = point.budget.hum > kMuchHum;
+    if (is_hum || point.scatters) {
+      out.text(is_hum ? " Hz: leave it out, hum of the mains is in it, u "
+                      : " Hz: the repeats differ by more than chance, u ");
+      percent(out, is_hum ? point.budget.hum : point.budget.noise).text(" % of the mean").line();
     } else {
       out.text(" Hz: distorted, the sine leaves ")
           .fixed(static_cast<double>(point.residual_percent), 2);
@@ -204,15 +199,15 @@ void write_flagged(const SweepResults& sweep, ReportWriter& out) noexcept {
 
 void write_common(const SweepResults& sweep, ReportWriter& out) noexcept {
   const CommonBudget& common = sweep.common;
-  out.label("Common to all points").text("reference ").fixed(kPercent * common.reference, 4);
-  out.text(" %, gains ").fixed(kPercent * common.gain, 4).text(" %, mounting ");
-  out.fixed(kPercent * common.mounting, 4).text(" %, drift ");
+  percent(out.label("Common to all points").text("reference "), common.reference);
+  percent(out.text(" %, gains "), common.gain);
+  percent(out.text(" %, mounting "), common.mounting).text(" %, drift ");
   if (magnitude(sweep.check_before) > 0.0 && magnitude(sweep.check_after) > 0.0) {
-    out.fixed(kPercent * common.drift, 4).text(" %").line();
+    percent(out, common.drift).text(" %").line();
   } else {
     out.text("not known").line();
   }
-  out.indent().text("together ").fixed(kPercent * common.total, 4).text(" %; expanded (k = 2) ");
+  percent(out.indent().text("together "), common.total).text(" %; expanded (k = 2) ");
   out.general(kCoverageFactor * kPercent * common.total, 6).text(" %").line();
 }
 
@@ -257,12 +252,12 @@ void write_budget_row(const SweepPoint& point, const CommonBudget& common, int d
     out.cell(12).fixed(kStandardGravity_mps2 * response.amplitude, less);
   }
   out.cell(10).fixed(kDegreesPerRadian * response.phase_rad, 3);
-  out.cell(9).fixed(kPercent * budget.noise, 4);
-  out.cell(9).fixed(kPercent * budget.quantisation, 4);
-  out.cell(9).fixed(kPercent * budget.hum, 4);
-  out.cell(10).fixed(kPercent * budget.distortion, 4);
-  out.cell(9).fixed(kPercent * budget.shared, 4);
-  out.cell(9).fixed(kCoverageFactor * kPercent * total_u(point, common) / response.amplitude, 4);
+  percent(out.cell(9), budget.noise);
+  percent(out.cell(9), budget.quantisation);
+  percent(out.cell(9), budget.hum);
+  percent(out.cell(10), budget.distortion);
+  percent(out.cell(9), budget.shared);
+  percent(out.cell(9), kCoverageFactor * total_u(point, common) / response.amplitude);
   out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
 }
 
@@ -382,8 +377,9 @@ void write_measurement_section(const Measurement& measurement, ReportWriter& out
   out.label("Points measured").integer(sweep.points().size()).text(" of ");
   out.integer(sweep.settings.frequency_count).line();
   for (const Warning warning : {Warning::kEnded, Warning::kDataSheet, Warning::kChange}) {
-    if (holds(warning, sweep)) {
-      write_warning(warning, out);
+    if (contradicts(warning, sweep)) {
+      out.part(ReportPart::kWarning).text("  WARNING: ");
+      out.text(words_of_contradiction(warning)).text(".\n");
     }
   }
   write_flagged(sweep, out);

@@ -105,6 +105,49 @@ void write_number_or_null(const char* name, bool exists, double value, JsonWrite
   }
 }
 
+/// A number of a struct, as a row of a table: less code than a call for each.
+struct NamedNumber {
+  const char* name;
+  std::size_t offset;
+};
+
+constexpr NamedNumber kBenchNumbers[] = {
+    {"level", offsetof(SweepSettings, level_mps2)},
+    {"acceleration_limit", offsetof(SweepSettings, acceleration_limit_mps2)},
+    {"drive_limit", offsetof(SweepSettings, drive_limit_v)},
+    {"slew", offsetof(SweepSettings, slew_v_per_s)},
+    {"reference_percent", offsetof(SweepSettings, reference.expanded_percent)},
+    {"reference_gain", offsetof(SweepSettings, reference_gain)},
+    {"reference_gain_percent", offsetof(SweepSettings, reference_gain_expanded_percent)},
+    {"device_gain", offsetof(SweepSettings, device_gain)},
+    {"device_gain_percent", offsetof(SweepSettings, device_gain_expanded_percent)},
+    {"ratio", offsetof(SweepSettings, ratio_correction)},
+    {"ratio_percent", offsetof(SweepSettings, ratio_expanded_percent)},
+    {"mounting_percent", offsetof(SweepSettings, mounting_expanded_percent)},
+    {"skew", offsetof(SweepSettings, skew_s)},
+    {"skew_u", offsetof(SweepSettings, skew_expanded_s)},
+    {"clock_ppm", offsetof(SweepSettings, clock_expanded_ppm)},
+    {"crosstalk_percent", offsetof(SweepSettings, crosstalk_expanded_percent)},
+    {"linearity_percent", offsetof(SweepSettings, linearity_expanded_percent)},
+};
+
+constexpr NamedNumber kSharedNumbers[] = {
+    {"skew", offsetof(SharedEffects, skew_s)},
+    {"clock", offsetof(SharedEffects, clock)},
+    {"drift", offsetof(SharedEffects, drift)},
+    {"corner", offsetof(SharedEffects, corner_hz)},
+    {"images", offsetof(SharedEffects, images)},
+    {"leak", offsetof(SharedEffects, leak)},
+    {"leak_back", offsetof(SharedEffects, leak_back)},
+    {"linearity", offsetof(SharedEffects, linearity)},
+};
+
+void write_numbers(Span<const NamedNumber> rows, const void* object, JsonWriter& json) noexcept {
+  for (const NamedNumber& row : rows) {
+    json.number(row.name, member_at<double>(object, row.offset));
+  }
+}
+
 void write_common(const SweepResults& sweep, JsonWriter& json) noexcept {
   const double before = sqrt(norm(sweep.check_before));
   const double after = sqrt(norm(sweep.check_after));
@@ -127,14 +170,7 @@ void write_common(const SweepResults& sweep, JsonWriter& json) noexcept {
   json.number("common_percent", kCoverageFactor * kPercent * common.total);
   const SharedEffects& shared = sweep.shared;
   json.open("shared");
-  json.number("skew", shared.skew_s);
-  json.number("clock", shared.clock);
-  json.number("drift", shared.drift);
-  json.number("corner", shared.corner_hz);
-  json.number("images", shared.images);
-  json.number("leak", shared.leak);
-  json.number("leak_back", shared.leak_back);
-  json.number("linearity", shared.linearity);
+  write_numbers(kSharedNumbers, &shared, json);
   json.close();
 }
 
@@ -175,23 +211,7 @@ void write_bench(const Measurement* measurement, const EvaluationResults* refuse
   json.integer("points", sweep.points().size());
   json.integer("frequencies", settings.frequency_count);
   json.number("sample_rate", measurement->format.sample_rate_hz);
-  json.number("level", settings.level_mps2);
-  json.number("acceleration_limit", settings.acceleration_limit_mps2);
-  json.number("drive_limit", settings.drive_limit_v);
-  json.number("slew", settings.slew_v_per_s);
-  json.number("reference_percent", settings.reference.expanded_percent);
-  json.number("reference_gain", settings.reference_gain);
-  json.number("reference_gain_percent", settings.reference_gain_expanded_percent);
-  json.number("device_gain", settings.device_gain);
-  json.number("device_gain_percent", settings.device_gain_expanded_percent);
-  json.number("ratio", settings.ratio_correction);
-  json.number("ratio_percent", settings.ratio_expanded_percent);
-  json.number("mounting_percent", settings.mounting_expanded_percent);
-  json.number("skew", settings.skew_s);
-  json.number("skew_u", settings.skew_expanded_s);
-  json.number("clock_ppm", settings.clock_expanded_ppm);
-  json.number("crosstalk_percent", settings.crosstalk_expanded_percent);
-  json.number("linearity_percent", settings.linearity_expanded_percent);
+  write_numbers(kBenchNumbers, &settings, json);
   write_common(sweep, json);
   write_budget(sweep, json);
   json.close();

@@ -9,8 +9,6 @@ namespace emax::app {
 namespace {
 
 constexpr std::uint32_t kOnePercent = 100;
-constexpr double kMuchChange = 0.01;
-constexpr double kNearSheet = 1.2;
 
 bool fit_warns(const EvaluationResults& results) noexcept {
   const WlspFit& fit = results.fit.result();
@@ -69,18 +67,6 @@ bool guards_disagree(const EvaluationResults& results) noexcept {
          results.matched.uncertainty.guard.disagreements > 0;
 }
 
-bool holds(Warning warning, const SweepResults& sweep) noexcept {
-  if (warning == Warning::kEnded) {
-    return sweep.status != Status::kOk;
-  }
-  if (warning == Warning::kChange) {
-    return sweep.shared.drift > kMuchChange;
-  }
-  const double off = sqrt(norm(sweep.check_before)) / sweep.settings.expected_sensitivity;
-  return warning == Warning::kDataSheet && sweep.settings.expected_sensitivity > 0.0 && off > 0.0 &&
-         !(off < kNearSheet && off * kNearSheet > 1.0);
-}
-
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept {
   const EnergyUncertainty& known = results.uncertainty;
@@ -119,7 +105,7 @@ bool holds(Warning warning, const EvaluationResults& results,
     case Warning::kEnded:
     case Warning::kDataSheet:
     case Warning::kChange:
-      return context.measurement != nullptr && holds(warning, context.measurement->sweep);
+      return context.measurement != nullptr && contradicts(warning, context.measurement->sweep);
   }
   return false;
 }
@@ -230,12 +216,9 @@ const char* words_of(Warning warning) noexcept {
       return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
              "second digit; give a shorter T or smaller uncertainties";
     case Warning::kEnded:
-      return "a fault has ended the sweep; the results rest on the points before it";
     case Warning::kDataSheet:
-      return "the device is 20 % or more off its data sheet: check the gains and the reference's "
-             "sensitivity";
     case Warning::kChange:
-      return "the check's ratio has changed: a gain was switched or a mounting or cable is loose";
+      return words_of_contradiction(warning);
     case Warning::kMeasurement:
       break;
   }

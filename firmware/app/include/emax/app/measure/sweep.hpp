@@ -100,14 +100,13 @@ class Sweep {
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   void raise_drive() noexcept;
   double offset_change_v(double reference_v, double device_v) const noexcept;
-  double offset_doubt_v(const SilentChannel& silent) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
   void end_target() noexcept;
-  bool has_turned_round(Complex ratio, Complex before) const noexcept;
+  bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
   Complex inverse_expected() const noexcept;
-  Status plausibility_of(Complex ratio) const noexcept;
-  void store_point(const PointScatter& scatter, Complex ratio) noexcept;
+  Status plausibility_of(const Complex& ratio) const noexcept;
+  void store_point(const PointScatter& scatter, const Complex& ratio) noexcept;
   void begin_next() noexcept;
   void fail(Status status) noexcept;
   void finish() noexcept;
@@ -115,7 +114,7 @@ class Sweep {
   double acceleration_of(double reference_v) const noexcept;
   double aim_mps2() const noexcept;
   double ratio_factor() const noexcept;
-  Complex ratio_of(Complex reference, Complex device) const noexcept;
+  Complex ratio_of(const Complex& reference, const Complex& device) const noexcept;
 
   SweepResults& results_;
   SweepWorkspace& work_;

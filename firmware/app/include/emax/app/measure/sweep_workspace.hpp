@@ -57,7 +57,8 @@ class SweepWorkspace {
   ChannelMonitor reference_monitor_;
   ChannelMonitor device_monitor_;
   Target target_;
-  Complex last_ratio_;                   // Of the frequency before; zero if there was none.
+  Complex last_ratio_;                   // Of the frequency before, or the check's.
+  double last_hz_ = 0.0;                 // Its frequency.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
   double level_room_mps2_ = 0.0;         // What takes a channel to full scale.

@@ -44,8 +44,9 @@ inline constexpr Warning kWarnings[] = {
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept;
 
-/// The same of those on the measurement alone: false for all others.
-bool holds(Warning warning, const SweepResults& sweep) noexcept;
+/// The same of those on the sweep alone: kEnded, kDataSheet and kChange, and their lines.
+bool contradicts(Warning warning, const SweepResults& sweep) noexcept;
+const char* words_of_contradiction(Warning warning) noexcept;
 
 /// @returns "fit", "damping", "fit_draws", "energy", "monte_carlo", "uncertainty" or
 /// "measurement".
