@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "emax/app/store/record_store.hpp"
+#include "emax/app/store/saved_state.hpp"
 
 #include "file_store.hpp"
 #include "hal/board_conformance.hpp"
@@ -123,7 +124,7 @@ TEST(FileStore, HoldsForTheNextProgram) {
     EXPECT_EQ(found, program == 0 ? std::vector<std::uint8_t>(found.size(), 0xFF) : expected);
     ASSERT_EQ(store.write(last, {expected.data(), expected.size()}), Status::kOk);
   }
-  EXPECT_EQ(text_of(directory.file()).size(), 17U * 4096U);
+  EXPECT_EQ(text_of(directory.file()).size(), 65U * 4096U);
 }
 
 TEST(FileStore, IsOnTheDiskWhenItSaysSo) {
@@ -144,10 +145,10 @@ TEST(FileStore, RefusesWhatItCannotUse) {
   const std::string path = directory.file();
   const std::string theirs[] = {"f_hz,amplitude\n30,1\n",
                                 std::string(100, '\0') + "x",
-                                std::string(17 * 4096, '\0'),
-                                std::string(20 * 4096, '\0'),
-                                "emax store 2\n" + std::string(17 * 4096 - 13, '\0'),
-                                std::string(4096, '\0') + std::string(17 * 4096, '\xFF')};
+                                std::string(65 * 4096, '\0'),
+                                std::string(70 * 4096, '\0'),
+                                "emax store 3\n" + std::string(65 * 4096 - 13, '\0'),
+                                std::string(4096, '\0') + std::string(65 * 4096, '\xFF')};
   for (const std::string& text : theirs) {
     std::ofstream(path, std::ios::binary) << text;
     FileBytes file;
@@ -168,6 +169,23 @@ TEST(FileStore, RefusesWhatItCannotUse) {
   ASSERT_EQ(unlink(path.c_str()), 0);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
   EXPECT_EQ(file.open(path).status, desk::ExitStatus::kBadInput) << "a pipe: no waiting";
+}
+
+TEST(FileStore, SaysThatAFileIsOfAnEarlierVersion) {
+  const Directory directory;
+  const std::string path = directory.file();
+  std::ofstream(path, std::ios::binary) << "emax store 1\n" + std::string(17 * 4096 - 13, '\0');
+  FileBytes file;
+  EXPECT_EQ(file.open(path).line, "--store: " + path +
+                                      ": a store of an earlier version; expected a file that "
+                                      "--store has made, or a new name");
+}
+
+// As `emax scpi --store` keeps them: with as many frequencies as there can be.
+TEST(FileStore, HasRoomForAllSettings) {
+  EXPECT_GE(kFileStoreFormat.slot_bytes,
+            app::kMaxSavedSettingsBytes + app::RecordStore::kFrameBytes);
+  EXPECT_GE(kFileStoreFormat.slot_count, 2 * app::kSavedRecords);
 }
 
 TEST(FileStore, OneProgramAtATime) {

@@ -9,6 +9,7 @@
 
 #include "emax/app/base/in_place.hpp"
 #include "emax/app/instrument/instrument.hpp"
+#include "emax/app/store/record_store.hpp"
 #include "emax/app/store/saved_state.hpp"
 #include "emax/sim/sim_bench.hpp"
 
@@ -25,11 +26,14 @@ class InstrumentBench {
  public:
   /// A poll takes this long on the instrument's clock.
   static constexpr std::uint64_t kPoll_us = 100;
+  /// Room for all settings that there can be.
+  static constexpr std::uint32_t kSlotBytes =
+      (app::kMaxSavedSettingsBytes + app::RecordStore::kFrameBytes + 7) / 8 * 8;
   /// Far more polls than any job of a test takes.
   static constexpr int kMostPolls = 3'000'000;
 
   explicit InstrumentBench(const sim::BenchSettings& settings = {}, std::size_t room = 1U << 22U)
-      : console(room), store({2 * app::kSavedRecords, 2048, 8}) {
+      : console(room), store({2 * app::kSavedRecords, kSlotBytes, 8}) {
     (void)bench.configure(settings);
     simulated = {settings.seed,
                  {settings.device.sensitivity, settings.device.natural_frequency_hz,

@@ -24,10 +24,14 @@ constexpr const char* kExpectation = "expected a file that --store has made, or 
 
 using Page = std::array<std::uint8_t, kPageBytes>;
 
+// With slots of 4096 bytes, too short for the settings of a PC.
+constexpr char kFirstTitle[] = "emax store 1\n";
+constexpr char kTitle[] = "emax store 2\n";
+constexpr std::size_t kTitleBytes = sizeof(kTitle) - 1;
+
 Page title_page() noexcept {
-  constexpr char kTitle[] = "emax store 1\n";
   Page page = {};
-  std::copy_n(kTitle, sizeof(kTitle) - 1, page.begin());
+  std::copy_n(kTitle, kTitleBytes, page.begin());
   return page;
 }
 
@@ -155,7 +159,11 @@ desk::Problem FileBytes::take_over(const std::string& path) {
                : desk::fault("--store: " + desk::printable(path) + ": " + std::strerror(errno));
   }
   Page page = {};
-  if (size != kFileBytes || !read_at(file_, 0, page) || page != title_page()) {
+  const bool is_read = read_at(file_, 0, page);
+  if (is_read && std::equal(kFirstTitle, kFirstTitle + kTitleBytes, page.begin())) {
+    return refused(path, "a store of an earlier version");
+  }
+  if (size != kFileBytes || !is_read || page != title_page()) {
     return refused(path, "something else, or damaged");
   }
   return {};

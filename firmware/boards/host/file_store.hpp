@@ -14,9 +14,9 @@
 
 namespace emax::host {
 
-/// A slot is a page of the file by itself: what a power cut does to the page that is being written
-/// leaves the others alone.
-inline constexpr hal::StoreFormat kFileStoreFormat = {16, 4096, 256};
+/// A slot is pages of the file by itself: what a power cut does to the page that is being written
+/// leaves the others alone. Settings with 1024 frequencies take 9.7 KiB.
+inline constexpr hal::StoreFormat kFileStoreFormat = {16, 16384, 256};
 
 /// Bytes that can be read and replaced at any place, for a `FileStore` of that many.
 class StoreBytes {

@@ -352,7 +352,7 @@ std::vector<Option> bench_setting_options(ReportOptions& options) {
   builder
       .add("reference-sensitivity", "V/(M/S2)", "0.1", "a number above 0",
            "of the reference sensor, in V/(m/s^2)", take_reference_sensitivity)
-      .add("reference-table", "F1,S1,...", "", "2 to 32 pairs of Hz and V/(m/s^2)",
+      .add("reference-table", "F1,S1,...", "", "2 to 64 pairs of Hz and V/(m/s^2)",
            "of the reference over frequency, with straight lines\n"
            "between them",
            take_reference_table);

@@ -15,6 +15,7 @@ namespace emax::desk {
 namespace {
 
 using Duration = InstrumentPort::Duration;
+using Deadline = InstrumentPort::Deadline;
 
 // The longest step of an instrument takes 50 ms, and a report line by serial line some seconds.
 constexpr Duration kPatience{10'000};
@@ -22,7 +23,10 @@ constexpr Duration kPatience{10'000};
 constexpr Duration kStopPatience{2'000};
 constexpr Duration kBetweenLooks{100};
 constexpr std::size_t kLongestLine = 65'536;
+// A tenth of what a serial line brings.
+constexpr std::size_t kBytesPerSecond = 1'152;
 constexpr int kGreetingLines = 16;
+constexpr std::size_t kShown = 60;     // Of what somebody else answers.
 constexpr unsigned kBusyBits = 0x118;  // Sweeping, measuring, computing.
 constexpr unsigned kSweepBits = 0x018;
 constexpr const char* kNoError = "0,\"No error\"";
@@ -65,7 +69,9 @@ Problem InstrumentClient::problem_of(Outcome outcome) {
       return stop();
     case Outcome::kTimeout:
       return fault("--instrument: " + printable(port_.name()) +
-                   ": no answer for 10 s; check cable, baud rate and power" +
+                   (input_.empty() ? ": no answer for 10 s; check cable, baud rate and power"
+                                   : ": no end of an answer within 10 s; it begins with \"" +
+                                         printable(input_.substr(0, kShown)) + "\"") +
                    (is_sweeping_ ? ", and send ABORt: its sweep may still run" : ""));
     case Outcome::kLost:
       break;
@@ -80,22 +86,24 @@ Problem InstrumentClient::send(const std::string& line) {
 }
 
 // Until so many bytes are there.
-Problem InstrumentClient::read_until(std::size_t count) {
+Problem InstrumentClient::read_until(std::size_t count, Deadline end) {
   while (input_.size() < count) {
-    if (Problem problem = problem_of(port_.read(input_, kPatience, true))) {
+    if (Problem problem = problem_of(port_.read(input_, end, true))) {
       return problem;
     }
   }
   return {};
 }
 
+// All of a line within the patience, however many bytes of it come one by one.
 Problem InstrumentClient::read_line(std::string& line) {
+  const Deadline deadline = InstrumentPort::after(kPatience);
   std::size_t end = input_.find('\n');
   while (end == std::string::npos) {
     if (input_.size() > kLongestLine) {
       return fault("--instrument: " + printable(port_.name()) + ": answers without an end");
     }
-    if (Problem problem = read_until(input_.size() + 1)) {
+    if (Problem problem = read_until(input_.size() + 1, deadline)) {
       return problem;
     }
     end = input_.find('\n');
@@ -117,7 +125,8 @@ Problem InstrumentClient::ask_block(const std::string& query, std::string& conte
   if (Problem problem = send(query)) {
     return problem;
   }
-  if (Problem problem = read_until(2)) {
+  const Deadline deadline = InstrumentPort::after(kPatience);
+  if (Problem problem = read_until(2, deadline)) {
     return problem;
   }
   const int digits = input_[1] - '0';
@@ -126,11 +135,12 @@ Problem InstrumentClient::ask_block(const std::string& query, std::string& conte
                  " was not answered with a block; expected an emax of this version");
   }
   const std::size_t head = 2 + static_cast<std::size_t>(digits);
-  if (Problem problem = read_until(head)) {
+  if (Problem problem = read_until(head, deadline)) {
     return problem;
   }
   const std::size_t length = std::strtoul(input_.substr(2, head - 2).c_str(), nullptr, 10);
-  if (Problem problem = read_until(head + length)) {
+  const Duration for_all = kPatience + Duration{1000 * (length / kBytesPerSecond)};
+  if (Problem problem = read_until(head + length, InstrumentPort::after(for_all))) {
     return problem;
   }
   content = input_.substr(head, length);
@@ -146,6 +156,11 @@ Problem InstrumentClient::open(const std::string& port) {
   return greet();
 }
 
+Problem InstrumentClient::no_emax(const std::string& answer) const {
+  return fault("--instrument: " + printable(port_.name()) + ": answers \"" +
+               printable(answer.substr(0, kShown)) + "\" to *IDN?; expected an emax");
+}
+
 // A device clear ends what somebody has left half said; its answer may begin with the end of a line
 // that was sent in part.
 Problem InstrumentClient::greet() {
@@ -153,15 +168,17 @@ Problem InstrumentClient::greet() {
     return problem;
   }
   std::string line;
+  std::string other;  // Whatever came in its place.
   for (int i = 0; i < kGreetingLines && line.compare(0, 5, "emax,") != 0; ++i) {
     if (Problem problem = read_line(line)) {
-      return problem;
+      const bool is_other = problem.status == ExitStatus::kFault && !(other + input_).empty();
+      return is_other ? no_emax(other.empty() ? input_ : other) : problem;
     }
+    other = line.empty() ? other : line;
   }
   const std::size_t end = line.rfind(';');
   if (line.compare(0, 5, "emax,") != 0 || end == std::string::npos) {
-    return fault("--instrument: " + printable(port_.name()) + ": answers \"" +
-                 printable(line.substr(0, 60)) + "\" to *IDN?; expected an emax");
+    return no_emax(line);
   }
   if ((std::strtoul(line.c_str() + end + 1, nullptr, 10) & kBusyBits) != 0) {
     return fault("--instrument: " + printable(port_.name()) +
@@ -259,7 +276,7 @@ Problem InstrumentClient::measure(ConsoleProgress& progress) {
   }
   for (;;) {
     std::string line;
-    if (Problem problem = ask(":SYST:PROG?;:STAT:OPER:COND?", line)) {
+    if (Problem problem = ask(":SYST:PROG?;:TRAC:FRES:POIN?;:STAT:OPER:COND?", line)) {
       return problem;
     }
     const std::size_t end = line.rfind(';');
@@ -269,11 +286,37 @@ Problem InstrumentClient::measure(ConsoleProgress& progress) {
       return {};
     }
     progress.show("sweep of the instrument,", std::strtod(line.c_str(), nullptr) / 100.0);
-    const Outcome outcome = port_.read(input_, kBetweenLooks, true);
+    const std::size_t begin = line.find(';') + 1;
+    if (Problem problem = keep_points(std::strtoul(line.c_str() + begin, nullptr, 10))) {
+      return problem;
+    }
+    const Outcome outcome = port_.read(input_, InstrumentPort::after(kBetweenLooks), true);
     if (outcome != Outcome::kOk && outcome != Outcome::kTimeout) {
       return problem_of(outcome);
     }
   }
+}
+
+// Those that are new.
+Problem InstrumentClient::keep_points(std::size_t count) {
+  while (early_points_.size() < count && count <= kMaxPoints) {
+    std::string line;
+    if (Problem problem = ask(":FETC:POIN? " + std::to_string(early_points_.size() + 1), line)) {
+      return problem;
+    }
+    EarlyPoint point;
+    char* rest = nullptr;
+    point.frequency_hz = std::strtod(line.c_str(), &rest);
+    for (double* const number : {&point.amplitude, &point.phase_deg}) {
+      if (*rest != ',') {
+        return fault("--instrument: " + printable(port_.name()) + ": FETC:POIN? answers \"" +
+                     printable(line.substr(0, kShown)) + "\"; expected an emax of this version");
+      }
+      *number = std::strtod(rest + 1, &rest);
+    }
+    early_points_.push_back(point);
+  }
+  return {};
 }
 
 // The instrument comes first: whether it has heard is said.
@@ -287,8 +330,9 @@ Problem InstrumentClient::stop() {
                         "ABOR;*OPC?\n",
                         kStopPatience, false) == Outcome::kOk;
   input_.clear();
+  const Deadline end = InstrumentPort::after(kStopPatience);
   while (is_at_rest && input_.find("1\n") == std::string::npos) {
-    is_at_rest = port_.read(input_, kStopPatience, false) == Outcome::kOk;
+    is_at_rest = port_.read(input_, end, false) == Outcome::kOk;
   }
   return {ExitStatus::kStopped,
           is_at_rest ? "stopped during the sweep of the instrument, which has led its drive to zero"

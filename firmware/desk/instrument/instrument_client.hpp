@@ -1,7 +1,9 @@
 // The PC as the front end of an instrument: sets it up, has it measure, and fetches the sweep.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/report/measurement.hpp"
@@ -24,6 +26,13 @@ struct InstrumentSweep {
   app::SimulatedBench simulated;  ///< If so.
 };
 
+/// A point as it is told while the sweep runs: its uncertainties are known at the end.
+struct EarlyPoint {
+  double frequency_hz = 0.0;
+  double amplitude = 0.0;
+  double phase_deg = 0.0;
+};
+
 /// Speaks SCPI with one instrument. Every answer has an end to its patience; a request to stop is
 /// heeded within a tenth of a second, and ends the sweep of the instrument first.
 class InstrumentClient final {
@@ -42,6 +51,9 @@ class InstrumentClient final {
   /// Fetches what it has measured, with all its digits.
   Problem fetch(InstrumentSweep& sweep);
 
+  /// What was told of a sweep that `measure()` has not seen the end of.
+  const std::vector<EarlyPoint>& early_points() const noexcept { return early_points_; }
+
  private:
   using Outcome = InstrumentPort::Outcome;
 
@@ -54,13 +66,16 @@ class InstrumentClient final {
   Problem ask(const std::string& query, std::string& line);
   Problem ask_block(const std::string& query, std::string& content);
   Problem read_line(std::string& line);
-  Problem read_until(std::size_t count);
+  Problem no_emax(const std::string& answer) const;
+  Problem read_until(std::size_t count, InstrumentPort::Deadline end);
+  Problem keep_points(std::size_t count);
   Problem send(const std::string& line);
   Problem problem_of(Outcome outcome);
   Problem stop();
 
   InstrumentPort port_;
-  std::string input_;         // Read and not taken.
+  std::string input_;  // Read and not taken.
+  std::vector<EarlyPoint> early_points_;
   bool is_sweeping_ = false;  // INITiate was sent.
 };
 

@@ -118,8 +118,7 @@ Problem InstrumentPort::open_socket(const std::string& host, const std::string& 
       socklen_t size = sizeof error;
       error = errno;
       if (error == EINPROGRESS) {
-        const bool is_there =
-            wait(POLLOUT, SteadyClock::now() + kConnectPatience, true) == Outcome::kOk;
+        const bool is_there = wait(POLLOUT, after(kConnectPatience), true) == Outcome::kOk;
         error = ETIMEDOUT;
         if (is_there) {
           (void)::getsockopt(file_, SOL_SOCKET, SO_ERROR, &error, &size);
@@ -143,8 +142,7 @@ Problem InstrumentPort::open_socket(const std::string& host, const std::string& 
   return {};
 }
 
-InstrumentPort::Outcome InstrumentPort::wait(short events, SteadyClock::time_point end,
-                                             bool heeds_stop) const {
+InstrumentPort::Outcome InstrumentPort::wait(short events, Deadline end, bool heeds_stop) const {
   for (;;) {
     if (heeds_stop && stop_requested()) {
       return Outcome::kStopped;
@@ -165,7 +163,7 @@ InstrumentPort::Outcome InstrumentPort::wait(short events, SteadyClock::time_poi
 
 InstrumentPort::Outcome InstrumentPort::write(std::string_view bytes, Duration patience,
                                               bool heeds_stop) {
-  const auto end = SteadyClock::now() + patience;
+  const Deadline end = after(patience);
   while (!bytes.empty()) {
     if (const Outcome outcome = wait(POLLOUT, end, heeds_stop); outcome != Outcome::kOk) {
       return outcome;
@@ -179,9 +177,7 @@ InstrumentPort::Outcome InstrumentPort::write(std::string_view bytes, Duration p
   return Outcome::kOk;
 }
 
-InstrumentPort::Outcome InstrumentPort::read(std::string& bytes, Duration patience,
-                                             bool heeds_stop) {
-  const auto end = SteadyClock::now() + patience;
+InstrumentPort::Outcome InstrumentPort::read(std::string& bytes, Deadline end, bool heeds_stop) {
   for (;;) {
     if (const Outcome outcome = wait(POLLIN, end, heeds_stop); outcome != Outcome::kOk) {
       return outcome;

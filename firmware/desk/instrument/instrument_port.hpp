@@ -13,6 +13,8 @@ namespace emax::desk {
 class InstrumentPort final {
  public:
   using Duration = std::chrono::milliseconds;
+  using Deadline = std::chrono::steady_clock::time_point;
+  static Deadline after(Duration patience) { return std::chrono::steady_clock::now() + patience; }
 
   InstrumentPort() = default;
   InstrumentPort(const InstrumentPort&) = delete;
@@ -35,12 +37,12 @@ class InstrumentPort final {
   /// Reads at least one byte, after those that were read before and not taken.
   ///
   /// @param[in,out] bytes Gets what has come in behind what it holds.
-  Outcome read(std::string& bytes, Duration patience, bool heeds_stop);
+  Outcome read(std::string& bytes, Deadline end, bool heeds_stop);
 
  private:
   Problem open_socket(const std::string& host, const std::string& service);
   Problem open_serial(const std::string& path);
-  Outcome wait(short events, std::chrono::steady_clock::time_point end, bool heeds_stop) const;
+  Outcome wait(short events, Deadline end, bool heeds_stop) const;
 
   int file_ = -1;
   std::string name_;

@@ -80,6 +80,7 @@ Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleP
     problem = client.fetch(remote_);
   }
   if (problem) {
+    early_points_ = client.early_points();
     return problem;
   }
   is_remote_ = true;

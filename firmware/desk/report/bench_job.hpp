@@ -1,6 +1,8 @@
 // The work of `emax report`: a sequencer, and the simulated bench or the instrument that measures.
 #pragma once
 
+#include <vector>
+
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/sequencer/sequencer.hpp"
 #include "emax/sim/sim_bench.hpp"
@@ -39,6 +41,9 @@ class BenchJob final {
   /// @returns Why there is no sweep, or that it has ended early, as of `run()`.
   Problem measure_with_instrument(const ReportOptions& options, ConsoleProgress& progress);
 
+  /// What an instrument has told of a sweep that it was lost in.
+  const std::vector<EarlyPoint>& early_points() const noexcept { return early_points_; }
+
   app::Sequencer& sequencer() noexcept { return sequencer_; }
   /// @returns Whether there is a result although a fault has ended the sweep.
   bool has_result_of_rest() const noexcept {
@@ -68,6 +73,7 @@ class BenchJob final {
   const ReportOptions* options_ = nullptr;
   bool is_remote_ = false;
   bool is_rest_ = false;
+  std::vector<EarlyPoint> early_points_;
 };
 
 }  // namespace emax::desk

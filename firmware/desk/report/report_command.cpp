@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
@@ -142,6 +143,30 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
   return problem;
 }
 
+void write_early_points(const std::vector<EarlyPoint>& points, app::TextWriter& out) {
+  out.text("f_hz,amplitude,phase_deg\n");
+  for (const EarlyPoint& point : points) {
+    out.exact(point.frequency_hz).text(",").exact(point.amplitude).text(",");
+    out.exact(point.phase_deg).text("\n");
+  }
+}
+
+// An instrument that was lost in its sweep: the points that it has told until then.
+Problem keep_early_points(const Problem& fault, const std::vector<EarlyPoint>& points,
+                          OutputFiles* files) {
+  constexpr const char* kName = "interrupted_points.csv";
+  const auto table = [&](app::TextWriter& out) { write_early_points(points, out); };
+  Problem problem = files != nullptr ? files->add(kName, table) : Problem{};
+  problem = files != nullptr && !problem ? files->commit() : problem;
+  const Problem printed = print(table);
+  problem = problem ? problem : printed;
+  Problem kept = fault;
+  kept.line += "; " + std::to_string(points.size()) + " points, without uncertainties, are kept" +
+               (files != nullptr && !problem ? std::string(" in ") + kName : "") +
+               (problem ? "; " + problem.line : "");
+  return kept;
+}
+
 bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
   return !options.points_path.empty() && !(options.damping > 0.0) &&
          evaluation.stage == app::Stage::kFailed &&
@@ -193,6 +218,9 @@ Problem run_report(Span<const std::string_view> arguments) {
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
     return give_sensitivity(results, options.json, files);
+  }
+  if (problem_of_work.status == ExitStatus::kFault && !bench.early_points().empty()) {
+    return keep_early_points(problem_of_work, bench.early_points(), files);
   }
   const bool is_of_rest = problem_of_work && bench.has_result_of_rest();
   if (problem_of_work && !is_of_rest) {

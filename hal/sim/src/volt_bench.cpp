@@ -183,6 +183,25 @@ BenchVolts VoltBench::step(double drive_v) noexcept {
   if (!(sample_rate_hz_ > 0.0)) {
     return {};
   }
+  begin_step();
+  const PlantOutput sensed = plant_.step(distorted_v(drive_v));
+  const double size = abs(sensed.acceleration_mps2);
+  peak_mps2_ = size > peak_mps2_ ? size : peak_mps2_;
+  return end_step(sensed.acceleration_mps2 * drift_factor_, sensed.device_v);
+}
+
+BenchVolts VoltBench::step_wired(double reference_v, double device_v) noexcept {
+  if (!(sample_rate_hz_ > 0.0)) {
+    return {};
+  }
+  begin_step();
+  // Without sensor and conditioner, but with the error of the ratio, of which the device's channel
+  // has all.
+  return end_step(reference_v / (truth_.reference_sensitivity * settings_.reference_gain),
+                  device_v / (settings_.device_gain * truth_.mounting_factor));
+}
+
+void VoltBench::begin_step() noexcept {
   if (clock_ % kRefreshFrames == 0) {
     refresh();
   }
@@ -193,13 +212,13 @@ BenchVolts VoltBench::step(double drive_v) noexcept {
     break_down(settings_.second_fault.kind);
   }
   device_.offset_v += offset_climb_v_;
-  const PlantOutput sensed = plant_.step(distorted_v(drive_v));
-  const double size = abs(sensed.acceleration_mps2);
-  peak_mps2_ = size > peak_mps2_ ? size : peak_mps2_;
+}
+
+/// From what the sensors hand over to the converters.
+BenchVolts VoltBench::end_step(double reference, double device) noexcept {
   const NoisePair noise = noise_.pair();
-  const BenchVolts clean = {
-      conditioned_v(reference_, sensed.acceleration_mps2 * drift_factor_, noise.first),
-      conditioned_v(device_, sensed.device_v, noise.second)};
+  const BenchVolts clean = {conditioned_v(reference_, reference, noise.first),
+                            conditioned_v(device_, device, noise.second)};
   const BenchVolts volts = {
       bent_v(clean.reference_v, reference_.bend) + truth_.into_reference * clean.device_v,
       bent_v(clean.device_v, device_.bend) + truth_.into_device * clean.reference_v};

@@ -176,7 +176,7 @@ TEST(Instrument, TakesTheReferenceOverFrequency) {
   EXPECT_EQ(i.ask("REF:TABL 10,0.25,1000,0.5;TABL 0,0.125;TABL?"),
             "0,1.25E-1");  // As it is answered.
   EXPECT_EQ(i.ask("REF:TABL 0,0.25;TABL?"), "0,2.5E-1");
-  const char* kExpected = "-109,\"Missing parameter;2 to 32 pairs of Hz and V/(m/s2)\"";
+  const char* kExpected = "-109,\"Missing parameter;2 to 64 pairs of Hz and V/(m/s2)\"";
   EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000"), kExpected);
   EXPECT_EQ(error_of(i, "REF:TABL 10,0.25"), kExpected);
   EXPECT_EQ(error_of(i, "REF:TABL 10,0.25,1000,0"),
@@ -524,7 +524,6 @@ TEST(Instrument, SetsEverythingAgainByWhatLrnAnswers) {
   InstrumentBench i;
   const std::string defaults = i.ask("*LRN?");
   EXPECT_LE(defaults.size(), 4096U) << "it must fit into one message";
-  EXPECT_EQ(defaults.substr(0, 15), ":SENS:REF:SENS ");
   EXPECT_EQ(i.ask(":SENS:REF:SENS 0.3,0.7;TABL 10,0.3,1000,0.5;:SENS:SWE:CYCL 4;:SOUR:LEV "
                   "3;:CALC:FILT:GAIN 1.1;"
                   ":CALC:ENER:CRIT BAND;LIM 2;DEL NONE;:CALC:MCAR:SEED 1,2,3,4;ADAP ON;"
@@ -657,7 +656,7 @@ TEST(Instrument, RefusesADeviceThatCannotBe) {
   ASSERT_EQ(i.ask(kPaperModel), "");
   for (const char* wrong : {"0,4000,0.3", "1,4000,1", "1,-1,0.3", "1,4000,0.00001"}) {
     EXPECT_EQ(error_of(i, std::string("CALC:MOD ") + wrong),
-              "-222,\"Data out of range;S, f0 above 0, beta 0.0001 to below 1\"");
+              "-222,\"Data out of range;S > 0, f0 0.001 to 1E9, beta 1E-4 to < 1\"");
   }
   EXPECT_EQ(error_of(i, "CALC:MOD 1,4000,0.3,-1,0,0"),
             "-222,\"Data out of range;uncertainties must be 0 or more\"");

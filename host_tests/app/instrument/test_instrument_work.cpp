@@ -1,6 +1,7 @@
 // What runs in the background: overlapped commands, ABORt, faults of the bench, and peers that
 // misbehave.
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <ostream>
 #include <string>
@@ -401,12 +402,13 @@ TEST(InstrumentQueries, AreKeptForAReaderThatPauses) {
 TEST(InstrumentQueries, CanBeDroppedWhenNobodyReads) {
   InstrumentBench i({}, 64);
   i.send("DIAG:RAND? 1000000");
-  for (int n = 0; n < 1000; ++n) {
-    i.console.send("*ESR?\n*CLS\n");  // 8 KiB that nobody takes.
-    i.poll(100);
+  for (std::size_t n = 0; n < app::scpi::InputBuffer::kCapacity / 4; ++n) {
+    i.console.send("*ESR?\n*CLS\n");  // More than the memory holds, and nobody takes it.
+    i.poll(20);
   }
+  i.poll(20'000);
   i.console.receive();
-  for (int n = 0; n < 1000; ++n) {
+  for (int n = 0; n < 10'000; ++n) {
     i.poll(20);
     i.console.receive();
   }
@@ -524,6 +526,25 @@ TEST(InstrumentSweep, FitsThePointsBeforeAFault) {
   EXPECT_EQ(i.ask("STAT:QUES:COND?"), "1");
   EXPECT_NE(i.ask("CALC:ENER?"), "");
   EXPECT_EQ(i.errors(), "") << "one warning is enough";
+}
+
+// A shaker that was stopped in mid-sweep swings on its suspension for a while: that is neither a
+// drift nor noise.
+TEST(InstrumentSweep, BeginsAnewRightAfterAnAbort) {
+  for (const int polls : {700, 850, 1000, 1100}) {
+    SCOPED_TRACE(polls);
+    InstrumentBench i;
+    EXPECT_EQ(i.ask("SOUR:LEV 15;:INIT;*OPC?"), "1");
+    const double noise_v = i.instrument->sequencer().sweep().inputs.silent_reference.noise_v;
+    EXPECT_EQ(i.ask("INIT"), "");
+    i.poll(polls);
+    ASSERT_TRUE(i.instrument->is_sweeping());
+    EXPECT_GT(std::abs(i.instrument->sequencer().sweep().check_before.re), 0.0) << "it is driven";
+    EXPECT_EQ(i.ask("ABOR;:INIT;*OPC?"), "1");
+    EXPECT_EQ(i.errors(), "");
+    EXPECT_NEAR(i.instrument->sequencer().sweep().inputs.silent_reference.noise_v, noise_v,
+                0.1 * noise_v);
+  }
 }
 
 TEST(InstrumentSweep, RefusesWhatTheBenchCannotDo) {

@@ -89,6 +89,7 @@ void fill(Settings& settings, SweepSettings& sweep) {
   for (std::size_t i = 0; i < settings.trend_s.size(); ++i) {
     settings.trend_s[i] = 0.001 * static_cast<double>(i + 1);
   }
+  settings.common_percent = 0.75;
   sweep.frequency_count = emax::kMaxPoints;
   for (std::size_t i = 0; i < sweep.frequency_hz.size(); ++i) {
     sweep.frequency_hz[i] = 33.3 * static_cast<double>(i + 1);
@@ -155,7 +156,7 @@ void expect_same(const SweepSettings& found, const SweepSettings& expected) {
 TEST(SavedSettings, ComeBackAsTheyWere) {
   Settings settings = kDefaultSettings;
   SweepSettings sweep = default_sweep_settings();
-  EXPECT_EQ(encoded(settings, sweep).size(), 309U + 8 * 5 + 8 * 42 + 16 * 1);
+  EXPECT_EQ(encoded(settings, sweep).size(), 317U + 8 * 5 + 8 * 42 + 16 * 1);
   Target target;
   ASSERT_EQ(target.decode(encoded(settings, sweep)), Status::kOk);
   expect_same(target.sweep, sweep);
@@ -188,13 +189,14 @@ TEST(SavedSettings, ComeBackAsTheyWere) {
   EXPECT_EQ(target.settings.generator, emax::Generator::k1982);
   EXPECT_EQ(target.settings.trend_s, settings.trend_s);
   EXPECT_EQ(target.settings.trend_count, settings.trend_count);
+  EXPECT_EQ(target.settings.common_percent, 0.75);
 }
 
 // The layout is a promise to later versions. The numbers' bytes are from Python's struct.pack.
 TEST(SavedSettings, BytesOfTheDefaults) {
   const Bytes bytes = encoded(kDefaultSettings, default_sweep_settings());
   const std::array<std::uint8_t, 33> expected = {
-      'E',  'S',  3,    0,                              // Kind and version.
+      'E',  'S',  4,    0,                              // Kind and version.
       10,   0,    0,    0,                              // Order.
       0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x8F, 0x40,   // 1000.0.
       0,                                                // GainMode::kAuto.

@@ -119,7 +119,6 @@ void Instrument::reset() noexcept {
   abort();
   sequencer_.reset();
   change_device();
-  common_percent_ = 0.0;
   reset_settings();
 }
 

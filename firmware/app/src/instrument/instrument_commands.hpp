@@ -87,17 +87,21 @@ struct InstrumentCommands {
   static const ResponsePoint& point_at(const Instrument& i, std::size_t index) noexcept;
   /// With the common part.
   static double total_u_amplitude(const Instrument& i, std::size_t index) noexcept;
+  static void answer_response(const ResponsePoint& point, scpi::Response& out) noexcept;
   /// @param[in] factor Of the uncertainties: 1, or the coverage factor.
   static void answer_point(const Instrument& i, std::size_t index, double factor,
                            scpi::Response& out) noexcept;
   /// @returns 0 if the query waits or has failed.
   static std::size_t points_to_fetch(Instrument& i, Call& call) noexcept;
   static void fetch(Instrument& i, Call& call) noexcept;
+  static void fetch_point(Instrument& i, Call& call) noexcept;
   static void fetch_trace(Instrument& i, Call& call) noexcept;
   static void fetch_json(Instrument& i, Call& call) noexcept;
   static void read(Instrument& i, Call& call) noexcept;
   static double common_percent(const Instrument& i) noexcept;
   static void common_part(Instrument& i, Call& call) noexcept;
+  /// Of points that are there already, the uncertainties stay what they are in all.
+  static void take_common(Instrument& i, Call& call, double percent) noexcept;
   static bool split_common(const Instrument& i, double percent, FrequencyResponse& points) noexcept;
   static void add_points(Instrument& i, Call& call) noexcept;
 
@@ -142,6 +146,9 @@ struct InstrumentCommands {
   // Diagnosis
 
   static void random(Instrument& i, Call& call) noexcept;
+  static void loopback(Instrument& i, Call& call) noexcept;
+  /// Loopback, and then ratio and skew as settings.
+  static void acquire_corrections(Instrument& i, Call& call) noexcept;
   static void memory(Instrument& i, Call& call) noexcept;
 };
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "emax/app/points/reference_uncertainty.hpp"
+#include "emax/app/settings/settings_rows.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/elementary.hpp"
 #include "emax/base/units.hpp"
@@ -18,7 +19,6 @@ constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = 1e300;
 constexpr double kMaxPhase_deg = 360.0;
 constexpr double kPercent = 100.0;
-constexpr double kMaxCommonPercent = 50.0;
 constexpr std::int64_t kMaxRandom = 1'000'000;
 constexpr std::size_t kPointFields = 5;
 constexpr NumberRule kAnyNumber = {-kHuge, kHuge, kNoDefault, nullptr};
@@ -63,11 +63,15 @@ double InstrumentCommands::total_u_amplitude(const Instrument& i, std::size_t in
   return sqrt(point.u_amplitude * point.u_amplitude + common * common);
 }
 
+void InstrumentCommands::answer_response(const ResponsePoint& point, scpi::Response& out) noexcept {
+  out.number(point.frequency_hz).number(point.amplitude);
+  out.number(point.phase_rad * kDegreesPerRadian);
+}
+
 void InstrumentCommands::answer_point(const Instrument& i, std::size_t index, double factor,
                                       scpi::Response& out) noexcept {
   const ResponsePoint& point = point_at(i, index);
-  out.number(point.frequency_hz).number(point.amplitude);
-  out.number(point.phase_rad * kDegreesPerRadian);
+  answer_response(point, out);
   out.number(factor * total_u_amplitude(i, index));
   out.number(factor * (point.u_phase_rad * kDegreesPerRadian));
 }
@@ -81,6 +85,14 @@ void InstrumentCommands::fetch(Instrument& i, Call& call) noexcept {
   if (count > 0) {
     call.answer().integer(static_cast<std::int64_t>(count));
     call.answer_items(count);
+  }
+}
+
+void InstrumentCommands::fetch_point(Instrument& i, Call& call) noexcept {
+  const auto count = static_cast<std::int64_t>(point_count(i));
+  std::int64_t number = 0;
+  if (call.integer({1, count, 1}, number)) {
+    answer_response(point_at(i, static_cast<std::size_t>(number - 1)), call.answer());
   }
 }
 
@@ -122,30 +134,40 @@ double InstrumentCommands::common_percent(const Instrument& i) noexcept {
              : i.common_percent();
 }
 
-// Of points that are there already, the uncertainties stay what they are in all.
 void InstrumentCommands::common_part(Instrument& i, Call& call) noexcept {
   double percent = 0.0;
-  if (!call.setting({0.0, kMaxCommonPercent, 0.0, scpi::kPercent}, common_percent(i), percent)) {
+  if (!call.setting({0.0, ranges::kMaxCommonPercent, 0.0, scpi::kPercent}, common_percent(i),
+                    percent)) {
     return;
   }
   if (const ErrorWords words = i.conflict_with(Part::kDevice)) {
     report(words, call);
     return;
   }
-  Sequencer& work = i.sequencer();
-  if (work.points_origin() == Origin::kSweep) {
+  if (i.sequencer().points_origin() != Origin::kSweep) {
+    take_common(i, call, percent);
+    return;
+  }
+  // What is set already may be set again: *LRN? tells it.
+  if (percent != i.common_percent()) {
     call.fail(ErrorCode::kSettingsConflict, "points of a sweep: TRAC:FRES:CLE first");
+  }
+}
+
+void InstrumentCommands::take_common(Instrument& i, Call& call, double percent) noexcept {
+  Sequencer& work = i.sequencer();
+  const bool has_points = work.points_origin() == Origin::kTable && work.points().size() > 0;
+  if (!has_points || percent == i.common_percent()) {
+    i.set_common_percent(percent);
     return;
   }
   FrequencyResponse& points = work.borrow<FrequencyResponse>();
-  if (work.points().size() > 0 && !split_common(i, percent, points)) {
+  if (!split_common(i, percent, points)) {
     call.fail(ErrorCode::kDataOutOfRange, "a point has a smaller U(A)");
     return;
   }
   i.set_common_percent(percent);
-  if (work.points().size() > 0) {
-    report(i.take(points), call);
-  }
+  report(i.take(points), call);
 }
 
 /// The points with all of their uncertainty, and then with this common part apart from it.
@@ -324,7 +346,7 @@ void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
 const char* InstrumentCommands::problem_of(const Device& device) noexcept {
   const ParameterBox& u = device.u;
   if (validate(device.estimate) != Status::kOk) {
-    return "S, f0 above 0, beta 0.0001 to below 1";
+    return "S > 0, f0 0.001 to 1E9, beta 1E-4 to < 1";
   }
   if (!(u.sensitivity >= 0.0) || !(u.natural_frequency_hz >= 0.0) || !(u.damping >= 0.0)) {
     return "uncertainties must be 0 or more";

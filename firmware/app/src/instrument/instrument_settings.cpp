@@ -194,6 +194,16 @@ struct ReferenceValue {
   InstrumentCommands::take(i, call, next);
 }
 
+[[gnu::noinline]] void take_corrections(Instrument& i, scpi::Call& call,
+                                        const LoopbackResults& found) noexcept {
+  SweepSettings next = i.sweep_settings();
+  next.ratio_correction = found.ratio;
+  next.ratio_expanded_percent = found.ratio_percent;
+  next.skew_s = found.skew_s;
+  next.skew_expanded_s = found.skew_expanded_s;
+  InstrumentCommands::take(i, call, next);
+}
+
 /// @param[in] uncertainty The new value of the next field; null if it keeps its own.
 [[gnu::noinline]] void take_value(Instrument& i, scpi::Call& call, const SettingField* field,
                                   const SettingValue& value, const double* uncertainty) noexcept {
@@ -327,7 +337,8 @@ void InstrumentCommands::reference_table(Instrument& i, Call& call) noexcept {
     return;
   }
   if (count % 2 != 0 || count < 4) {
-    call.fail(ErrorCode::kMissingParameter, "2 to 32 pairs of Hz and V/(m/s2)");
+    call.fail(ErrorCode::kMissingParameter,
+              "2 to " EMAX_TEXT_OF(EMAX_MAX_REFERENCE_POINTS) " pairs of Hz and V/(m/s2)");
     return;
   }
   take_table(i, call, pairs, count / 2);
@@ -358,6 +369,30 @@ void InstrumentCommands::sweep_frequencies(Instrument& i, Call& call) noexcept {
 void InstrumentCommands::default_frequencies(Instrument& i, Call& call) noexcept {
   const SweepSettings by_default = i.default_sweep();
   take_frequencies(i, call, by_default.frequency_hz, by_default.frequency_count);
+}
+
+void InstrumentCommands::loopback(Instrument& i, Call& call) noexcept {
+  if (!i.provide_loopback(call)) {
+    return;
+  }
+  const LoopbackResults& found = *i.sequencer().loopback();
+  for (const double number :
+       {found.latency_frames, found.reference_offset_v, found.device_offset_v, found.reference_gain,
+        found.device_gain, found.ratio, found.skew_s, found.reference_noise_v, found.device_noise_v,
+        found.distortion_percent}) {
+    call.answer().number(number);
+  }
+  call.answer().integer(0);  // A frame that is lost is an error, and there is no answer.
+}
+
+void InstrumentCommands::acquire_corrections(Instrument& i, Call& call) noexcept {
+  const SweepSettings& current = i.sweep_settings();
+  if (call.is_query()) {
+    call.answer().number(current.ratio_correction).number(current.ratio_expanded_percent);
+    call.answer().number(current.skew_s).number(current.skew_expanded_s);
+  } else if (i.provide_loopback(call)) {
+    take_corrections(i, call, *i.sequencer().loopback());
+  }
 }
 
 bool InstrumentCommands::take_slot(Instrument& i, Call& call, std::uint32_t& slot) noexcept {
@@ -396,12 +431,20 @@ void InstrumentCommands::recall(Instrument& i, Call& call) noexcept {
     call.fail(ErrorCode::kSettingsConflict, "running: ABOR or *WAI first");
     return;
   }
+  const double percent = i.common_percent();
   const Status status = i.recall_settings(slot);
   if (status == Status::kNothingStored) {
     call.fail(ErrorCode::kDataCorruptOrStale, "empty or damaged slot: *SAV first");
-  } else if (status != Status::kOk) {
-    call.fail(ErrorCode::kSaveRecallMemoryLost, "set everything anew, *SAV again");
+    return;
   }
+  if (status != Status::kOk) {
+    call.fail(ErrorCode::kSaveRecallMemoryLost, "set everything anew, *SAV again");
+    return;
+  }
+  // The points at hand are still those of before.
+  const double recalled = i.common_percent();
+  i.set_common_percent(percent);
+  take_common(i, call, recalled);
 }
 
 }  // namespace emax::app

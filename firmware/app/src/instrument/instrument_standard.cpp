@@ -48,6 +48,12 @@ void put_short_header(const char* pattern, scpi::Response& out) noexcept {
   }
 }
 
+// What comes first: settings that limit others, at values that go with all there can be. The limits
+// of a setting come behind it in the table, so that all are told from the last to the first.
+constexpr char kFreeSettings[] =
+    ":SOUR:LEV MIN;LIM:VOLT MIN;:SOUR:SLEW MAX;:CALC:ENER:METH BEST;TIME MAX;"
+    ":CALC:MCAR:PROB 0.5;ADAP 0;TRI MAX;SEED 1,1,1,1;:CALC:REF:UNC ";
+
 // The number of that index in the table of the reference and, behind it, the frequencies.
 void learn_list(const Instrument& i, scpi::Call& call, std::size_t index) noexcept {
   const ReferenceCalibration& reference = i.sweep_settings().reference;
@@ -92,14 +98,21 @@ void InstrumentCommands::headers(Instrument& /*i*/, Call& call) noexcept {
 // The reference's table and the sweep's frequencies come last, one number after the other, for they
 // do not fit into one piece of an answer.
 void InstrumentCommands::learn(Instrument& i, Call& call) noexcept {
+  const bool is_item = call.stage() == Call::Stage::kItem;
+  if (is_item && call.item() == 0) {
+    call.answer().piece(kFreeSettings);
+    call.answer().join();
+    call.answer().number(i.common_percent());
+    return;
+  }
   const scpi::Table<Instrument> rows = Instrument::rows();
-  std::size_t learned = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
+  std::size_t learned = 1;
+  for (std::size_t k = rows.size(); k-- > 0;) {
     if (!is_learned(rows[k])) {
       continue;
     }
-    if (call.stage() == Call::Stage::kItem && learned == call.item()) {
-      call.answer().piece(learned > 0 ? ";:" : ":");
+    if (is_item && learned == call.item()) {
+      call.answer().piece(";:");
       put_short_header(rows[k].pattern, call.answer());
       call.answer().piece(" ");
       call.answer().join();
@@ -108,7 +121,7 @@ void InstrumentCommands::learn(Instrument& i, Call& call) noexcept {
     }
     ++learned;
   }
-  if (call.stage() == Call::Stage::kItem) {
+  if (is_item) {
     learn_list(i, call, call.item() - learned);
     return;
   }

@@ -67,9 +67,10 @@ inline constexpr scpi::Command<Instrument> kCommon[] = {
     {"STATus:PRESet", kSet, "", "Nothing enabled, rises are events", kPlain, standard<scpi::status_preset, I>},
 
     {"[SENSe:]REFerence:SENSitivity", kBoth, "<V/(m/s2)>[,<percent>]", "Of the reference sensor, and its expanded uncertainty", kLearned, C::reference},
-    {"[SENSe:]REFerence:TABLe", kBoth, "<f1>,<S1>,...", "Of the reference over frequency, 2 to 32 pairs; 0,S where it is one value", kPlain, C::reference_table},
+    {"[SENSe:]REFerence:TABLe", kBoth, "<f1>,<S1>,...", "Of the reference over frequency, 2 to 32 pairs, on a PC 64; 0,S where it is one value", kPlain, C::reference_table},
     {"[SENSe:]REFerence:TABLe:CLEar", kSet, "", "One value again: the first of the table", kPlain, C::clear_reference_table},
-    {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, ascending", kPlain, C::sweep_frequencies},
+    {"[SENSe:]CORRection:ACQuire", kBoth, "", "The same loopback, kept as RATio and SKEW; answers these: ratio,percent,skew,s", kPlain, C::acquire_corrections},
+    {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, on a PC 1024, ascending", kPlain, C::sweep_frequencies},
     {"[SENSe:]SWEep:FREQuency:DEFault", kSet, "", "The 42 frequencies of the default sweep", kPlain, C::default_frequencies},
 };
 
@@ -83,6 +84,7 @@ inline constexpr scpi::Command<Instrument> kWork[] = {
     {"ABORt", kSet, "", "Ends what runs, drive at zero; overtakes commands that wait", kImmediate, C::abort},
 
     {"FETCh:FRESponse", kQuery, "", "n, then f,A,phi,uA,uphi of each point: Hz, V/(m/s2), degrees, standard u with the common part", kPlain, C::fetch},
+    {"FETCh:POINt", kQuery, "<n>", "f,A,phi of the n-th point, also while the sweep goes on", kPlain, C::fetch_point},
     {"FETCh:TRACe", kQuery, "", "The points as TRACe takes them: expanded U (k = 2), in U(A) the common part of CALC:REF:UNC?", kPlain, C::fetch_trace},
     {"FETCh:JSON", kQuery, "", "What was measured and computed, as results.json, as a block", kPlain, C::fetch_json},
     {"READ:FRESponse", kQuery, "", "ABORt, INITiate and FETCh:FRESponse? in one", kPlain, C::read},
@@ -111,8 +113,9 @@ inline constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
     {"CALCulate:UNCertainty", kQuery, "", "Of E, by JCGM 101 with normal parameters: u,U,low,high,shortest_low,shortest_high,redrawn", kPlain, C::uncertainty},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
-    {"CALCulate:REPort", kQuery, "[<device>,<serial>,<operator>,<date>,<note>]", "The text of emax report, as a block; labels are strings", kPlain, C::report_text},
+    {"CALCulate:REPort", kQuery, "[<device>,<serial>,<operator>,<date>,<note>]", "The text of emax report, as a block; labels are strings, in ASCII", kPlain, C::report_text},
 
+    {"DIAGnostic:LOOPback", kQuery, "", "With a wire from drive to both inputs: latency,offset_r,offset_d,gain_r,gain_d,ratio,skew,noise_r,noise_d,thd,lost", kPlain, C::loopback},
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},
 };

@@ -234,6 +234,27 @@ bool Instrument::provide_fixed_point(Call& call) noexcept {
   return false;
 }
 
+// The wire may be another one by now: each call measures.
+bool Instrument::provide_loopback(Call& call) noexcept {
+  if (call.stage() == Call::Stage::kStart) {
+    sequencer_.forget_loopback();
+  }
+  if (sequencer_.loopback() != nullptr) {
+    return true;
+  }
+  if (!can_begin(call)) {
+    return false;
+  }
+  if (const Refusal refusal = sequencer_.loop_back(ports_.analog, sweep_settings_)) {
+    const ErrorWords words = words_of(refusal, sequencer_);
+    call.fail(words.code, words.words);
+    return false;
+  }
+  begin_work(scpi::kMeasuring);
+  call.wait();
+  return false;
+}
+
 /// Whether a query may begin its computation: nothing runs, and none that it has begun before has
 /// come to a bad end.
 bool Instrument::can_begin(Call& call) noexcept {

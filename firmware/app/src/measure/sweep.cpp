@@ -10,6 +10,8 @@
 namespace emax::app {
 namespace {
 
+// A shaker that a fault or a stop has left swinging comes to rest.
+constexpr double kRest_s = 2.0;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
@@ -58,6 +60,7 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   if (status != Status::kOk) {
     return status;
   }
+  const bool may_swing = results_.status != Status::kOk && results_.blocks > 0;
   results_.settings = settings;
   reset();
   work_.begin(stream_.format(), full_scales(settings, stream_.format()));
@@ -65,6 +68,10 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   work_.drive_.configure(work_.format_, settings.drive_limit_v, settings.slew_v_per_s);
   work_.silence_.start(work_.format_, work_.scales_);
   work_.left_ = work_.silence_.frames();
+  if (may_swing) {
+    work_.activity_ = SweepWorkspace::Activity::kRest;
+    work_.left_ = frames_of(kRest_s * work_.format_.sample_rate_hz);
+  }
   results_.stage = SweepStage::kSilence;
   return Status::kOk;
 }
@@ -146,7 +153,8 @@ void Sweep::watch() noexcept {
     }
     return;
   }
-  if (work_.activity_ == SweepWorkspace::Activity::kRampingDown) {
+  if (work_.activity_ == SweepWorkspace::Activity::kRampingDown ||
+      work_.activity_ == SweepWorkspace::Activity::kRest) {
     return;
   }
   const std::uint64_t period = frames_of(work_.format_.sample_rate_hz / work_.target_.frequency_hz);
@@ -213,6 +221,10 @@ void Sweep::consume(std::size_t from, std::size_t count) noexcept {
 
 void Sweep::end_activity() noexcept {
   switch (work_.activity_) {
+    case SweepWorkspace::Activity::kRest:
+      work_.activity_ = SweepWorkspace::Activity::kSilence;
+      work_.left_ = work_.silence_.frames();
+      return;
     case SweepWorkspace::Activity::kSilence:
       end_silence();
       return;

@@ -4,7 +4,10 @@
 namespace emax::app::scpi {
 namespace {
 
-static_assert(InputBuffer::kCapacity == 4096, "as the words of -363 say");
+constexpr char kTooLong[] = "a line has 4096 characters at most";
+constexpr char kTooLongOnPc[] = "a line has 32768 characters at most";
+static_assert(InputBuffer::kCapacity == 4096 || InputBuffer::kCapacity == 32768,
+              "as these words say");
 
 constexpr std::size_t kMaxOffender = 40;
 
@@ -61,7 +64,8 @@ bool Session::start_message() noexcept {
     return false;
   }
   if (message.text.empty()) {
-    status_.report(ErrorCode::kInputBufferOverrun, "a line has 4096 characters at most");
+    status_.report(ErrorCode::kInputBufferOverrun,
+                   InputBuffer::kCapacity == 4096 ? kTooLong : kTooLongOnPc);
     input_.remove(0, 0);
     return true;
   }

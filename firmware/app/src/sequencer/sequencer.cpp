@@ -77,7 +77,7 @@ bool Sequencer::is_of_device() const noexcept {
 }
 
 Obstacle Sequencer::obstacle_to(Part part) const noexcept {
-  if (job_ == Job::kSweep && part != Part::kSettings) {
+  if ((job_ == Job::kSweep || job_ == Job::kLoopback) && part != Part::kSettings) {
     return Obstacle::kSweepRuns;
   }
   const bool computes = job_ == Job::kEvaluation || job_ == Job::kFixedPoint;
@@ -132,6 +132,35 @@ void Sequencer::end_sweep() noexcept {
   }
 }
 
+// The loopback
+
+Refusal Sequencer::loop_back(hal::AnalogStream& stream, const SweepSettings& settings) noexcept {
+  if (is_working()) {
+    return {obstacle_to(Part::kDevice)};
+  }
+  stream_ = &stream;
+  (void)stream.loop_back(true);
+  const Status status = workspace_.loopback.start(stream, settings);
+  if (status != Status::kOk) {
+    (void)stream.loop_back(false);
+    return {Obstacle::kSweep, status};
+  }
+  begin(Job::kLoopback);
+  return {};
+}
+
+void Sequencer::end_loopback() noexcept {
+  job_ = Job::kNone;
+  (void)stream_->loop_back(false);
+  const Status status = workspace_.loopback.status();
+  has_loopback_ = status == Status::kOk;
+  if (status == Status::kNoReference) {
+    failure_ = {Obstacle::kNoWire};
+  } else if (!has_loopback_) {
+    failure_ = {Obstacle::kSweep, status};
+  }
+}
+
 // The evaluation
 
 /// Of a fit of before power off the evaluation takes the parameters with their covariance, but not
@@ -177,6 +206,7 @@ Refusal Sequencer::evaluate(const Settings& settings, Goal goal) noexcept {
     return refusal;
   }
   has_fixed_point_ = false;
+  has_loopback_ = false;
   const Status status = start_evaluation(settings, goal);
   if (status != Status::kOk) {
     return {Obstacle::kEvaluation, status};
@@ -232,6 +262,7 @@ void Sequencer::begin(Job job) noexcept {
   job_ = job;
   failure_ = {};
   has_fixed_point_ = false;
+  has_loopback_ = false;
 }
 
 void Sequencer::step() noexcept {
@@ -242,6 +273,12 @@ void Sequencer::step() noexcept {
       sweep_run().step();
       if (sweep_.done()) {
         end_sweep();
+      }
+      return;
+    case Job::kLoopback:
+      workspace_.loopback.step(*stream_);
+      if (workspace_.loopback.done()) {
+        end_loopback();
       }
       return;
     case Job::kEvaluation:
@@ -263,6 +300,10 @@ void Sequencer::abort() noexcept {
     sweep_run().stop();
     (void)sweep_.copy_to(points_);
   }
+  if (job_ == Job::kLoopback) {
+    workspace_.loopback.stop(*stream_);
+    (void)stream_->loop_back(false);
+  }
   if (job_ == Job::kEvaluation) {
     evaluation_run().stop();
   }
@@ -275,6 +316,8 @@ double Sequencer::progress() const noexcept {
       return 1.0;
     case Job::kSweep:
       return sweep_.progress();
+    case Job::kLoopback:
+      return workspace_.loopback.progress();
     case Job::kEvaluation:
       return workspace_.evaluation.progress();
     case Job::kFixedPoint:
@@ -289,6 +332,8 @@ const char* Sequencer::stage_name() const noexcept {
       return "idle";
     case Job::kSweep:
       return "sweep";
+    case Job::kLoopback:
+      return "loopback";
     case Job::kEvaluation:
       return name_of(evaluation_.stage);
     case Job::kFixedPoint:

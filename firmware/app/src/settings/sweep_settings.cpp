@@ -50,7 +50,7 @@ SettingsError check_frequencies(const SweepSettings& s, const hal::StreamFormat&
 
 SettingsError check_reference_table(const ReferenceCalibration& r) noexcept {
   if (r.count < 1 || r.count > kMaxReferencePoints) {
-    return {"reference table", "1 to 32 points"};
+    return {"reference table", "1 to " EMAX_TEXT_OF(EMAX_MAX_REFERENCE_POINTS) " points"};
   }
   for (std::size_t i = 0; i < r.count; ++i) {
     if (!is_positive(r.sensitivity[i])) {

@@ -11,10 +11,10 @@ namespace emax::app {
 namespace {
 
 // "ES" and "EI" with the version of what follows. A change of what follows needs a new version.
-constexpr std::uint32_t kSettingsVersion3 = 0x00035345;
+constexpr std::uint32_t kSettingsVersion4 = 0x00045345;
 constexpr std::uint32_t kIdentificationVersion1 = 0x00014945;
 static_assert(kMaxSavedSettingsBytes ==
-                  309 + 8 * kMaxTrendPoints + 8 * kMaxPoints + 16 * kMaxReferencePoints,
+                  317 + 8 * kMaxTrendPoints + 8 * kMaxPoints + 16 * kMaxReferencePoints,
               "the settings have changed: they need a new version, and their new size here");
 
 // The root of a square, or the square of a root, is off by this at most.
@@ -241,7 +241,7 @@ Identification identification_of(const EvaluationResults& results) noexcept {
 std::size_t encode(const Settings& settings, const SweepSettings& sweep,
                    Span<std::uint8_t> bytes) noexcept {
   Writer writer(bytes);
-  writer.whole(kSettingsVersion3);
+  writer.whole(kSettingsVersion4);
   go_through_all(settings, writer);
   go_through_all(sweep, writer);
   return writer.size();
@@ -259,7 +259,7 @@ Status decode(Span<const std::uint8_t> bytes, const hal::StreamFormat& format,
   Reader reader(bytes);
   std::uint32_t version = 0;
   reader.whole(version);
-  if (version != kSettingsVersion3) {
+  if (version != kSettingsVersion4) {
     return Status::kUnknownRecord;
   }
   go_through_all(scratch.settings, reader);

@@ -106,6 +106,12 @@ class AnalogStream {
 
   bool running() const noexcept { return running_; }
 
+  /// Feeds the drive to both inputs in place of what is connected to them, or no longer.
+  ///
+  /// @returns False if there is no switch for it, or while something runs: nothing has changed. A
+  ///          wire from the drive to both inputs does the same.
+  bool loop_back(bool is_on) noexcept { return !running_ && do_loop_back(is_on); }
+
   /// @returns True if nothing runs and the DAC puts out zero. The board answers from its converter,
   ///          so a drive that did not get to zero shows. Also for fault handlers: changes nothing.
   bool drive_is_at_zero() const noexcept { return !running_ && do_drive_is_at_zero(); }
@@ -140,6 +146,9 @@ class AnalogStream {
   /// @returns True if the word that the DAC holds is 0: read back from it where it can be, else the
   ///          last word that went out. Does not wait.
   virtual bool do_drive_is_at_zero() const noexcept = 0;
+
+  /// Only called while stopped, for boards that have a switch.
+  virtual bool do_loop_back(bool /*is_on*/) noexcept { return false; }
 
   bool within_limits(Span<const Word> drive) const noexcept;
   std::uint32_t halt() noexcept;

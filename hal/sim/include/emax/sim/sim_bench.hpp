@@ -34,6 +34,10 @@ struct DacRecord {
 /// While the stream has been started once only, the frame of a fault is also the index of the
 /// first response frame that is wrong; a lost or late block is the one that contains it.
 ///
+/// `loop_back()` puts a wire from the DAC to both ADCs: the drive as an ideal reconstruction filter
+/// makes it, at the device's input seen later by the skew, with offset, noise, hum and faults of
+/// the conditioners as before. It needs a latency of two frames.
+///
 /// Time is virtual: the clock counts frames and moves only when the stream does. While nothing is
 /// exchanged, the bench stands still.
 ///
@@ -74,6 +78,10 @@ class SimBench final : public hal::AnalogStream {
   std::uint32_t do_ramp_to_zero(hal::Word step_per_frame) noexcept override;
   void do_stop() noexcept override;
   bool do_drive_is_at_zero() const noexcept override { return dac_.last == 0; }
+  bool do_loop_back(bool is_on) noexcept override {
+    is_looped_ = is_on;
+    return true;
+  }
 
   /// From volts outside the front end to words.
   struct Converter {
@@ -84,6 +92,8 @@ class SimBench final : public hal::AnalogStream {
   };
 
   hal::Frame advance(hal::Word word) noexcept;
+  hal::Word word_at(std::uint64_t frame) const noexcept;
+  double wire_v(std::uint64_t frame, double later) const noexcept;
   void record(hal::Word word) noexcept;
   bool event_due(FaultKind kind) noexcept;
   double drive_v(hal::Word word) const noexcept;
@@ -99,6 +109,7 @@ class SimBench final : public hal::AnalogStream {
   bool configured_ = false;
   std::array<bool, 2> event_over_ = {};  ///< The lost or late block has been, of each fault.
   bool stuck_ = false;
+  bool is_looped_ = false;  // A wire feeds the drive to both inputs.
 };
 
 static_assert(sizeof(SimBench) <= 2560);

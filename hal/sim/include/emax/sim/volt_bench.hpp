@@ -165,6 +165,10 @@ class VoltBench {
   /// @returns The volts within this interval, not limited to any converter's range.
   BenchVolts step(double drive_v) noexcept;
 
+  /// The same interval with a wire in place of shaker, sensors and conditioners: these volts at
+  /// both inputs. What has broken down stays so; the shaker stands still.
+  BenchVolts step_wired(double reference_v, double device_v) noexcept;
+
   const BenchSettings& settings() const noexcept { return settings_; }
   const BenchTruth& truth() const noexcept { return truth_; }
   /// Largest |acceleration| since `configure()`, whatever the sensors tell.
@@ -184,6 +188,8 @@ class VoltBench {
 
   void draw() noexcept;
   void refresh() noexcept;
+  void begin_step() noexcept;
+  BenchVolts end_step(double reference, double device) noexcept;
   void break_down(FaultKind kind) noexcept;
   double distorted_v(double drive_v) const noexcept;
   double conditioned_v(Channel& channel, double sensor, double noise) const noexcept;

@@ -161,6 +161,7 @@ class Instrument {
   /// The same, also true where the points give S alone.
   bool provide_sensitivity(scpi::Call& call) noexcept;
   bool provide_fixed_point(scpi::Call& call) noexcept;
+  bool provide_loopback(scpi::Call& call) noexcept;
 
   /// *OPC: sets event bit 0 once nothing runs.
   void complete_operation() noexcept;
@@ -187,8 +188,8 @@ class Instrument {
   Span<const char> render_json() noexcept;
 
   /// The common part of points from elsewhere, expanded, in percent.
-  double common_percent() const noexcept { return common_percent_; }
-  void set_common_percent(double percent) noexcept { common_percent_ = percent; }
+  double common_percent() const noexcept { return settings_.common_percent; }
+  void set_common_percent(double percent) noexcept { settings_.common_percent = percent; }
 
   /// Bit of STATus:OPERation: an evaluation or a fixed point runs.
   static constexpr std::uint16_t kComputing = 1u << 8;
@@ -221,7 +222,6 @@ class Instrument {
   SweepSettings sweep_settings_;
   WichmannHill generator_;
   std::uint64_t deadlock_since_us_ = 0;
-  double common_percent_ = 0.0;
   bool is_fit_kept_ = false;     // The fit of these points is in the store.
   bool warns_of_sweep_ = false;  // A sweep that did not come to a good end; its fit is a warning.
   bool is_background_ = false;   // The job was begun by INITiate.

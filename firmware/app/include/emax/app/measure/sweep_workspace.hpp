@@ -28,7 +28,7 @@ class SweepWorkspace {
   /// Of the drive, beyond what the frequency before predicts, without a second look.
   static constexpr double kPermittedStep = 1.5;
 
-  enum class Activity : std::uint8_t { kSilence, kSettling, kMeasuring, kRampingDown };
+  enum class Activity : std::uint8_t { kRest, kSilence, kSettling, kMeasuring, kRampingDown };
 
   /// One frequency while it is measured.
   struct Target {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/base/capacity.hpp"
 #include "emax/base/span.hpp"
 
 namespace emax::app::scpi {
@@ -62,15 +63,17 @@ struct MessageText {
   bool is_valid = false;  ///< False if its last byte cannot be part of a message.
 };
 
-/// Holds what came in: complete messages and the beginning of the next. 4.1 KiB.
+/// Holds what came in: complete messages and the beginning of the next. 4.1 KiB,
+/// on a PC 32 KiB.
 ///
 /// Of a message that is longer than the memory only its place in the order is kept. Of one with a
 /// byte that cannot be part of a message only the beginning, with that byte, is kept. What is left
 /// of both is dropped up to the next LF or CR. The work is proportional to the bytes.
 class InputBuffer {
  public:
-  /// Characters of the longest message.
-  static constexpr std::size_t kCapacity = 4096;
+  /// Characters of the longest message: all settings in one, as *LRN? tells them, with as many
+  /// frequencies as a PC takes.
+  static constexpr std::size_t kCapacity = kMaxPoints > 64 ? 32768 : 4096;
 
   /// @returns How many bytes `add()` takes.
   std::size_t room() const noexcept;

@@ -8,6 +8,7 @@
 #include "emax/app/evaluate/evaluation.hpp"
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/evaluate/evaluation_workspace.hpp"
+#include "emax/app/measure/loopback.hpp"
 #include "emax/app/measure/sweep.hpp"
 #include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/measure/sweep_workspace.hpp"
@@ -23,7 +24,7 @@
 namespace emax::app {
 
 /// What runs.
-enum class Job : std::uint8_t { kNone, kSweep, kEvaluation, kFixedPoint };
+enum class Job : std::uint8_t { kNone, kSweep, kLoopback, kEvaluation, kFixedPoint };
 
 /// Where a device or its points come from.
 enum class Origin : std::uint8_t {
@@ -43,6 +44,7 @@ enum class Obstacle : std::uint8_t {
   kComputes,       ///< The same, of an evaluation or a fixed point.
   kSweepSetting,   ///< `refused` of the sweep's results names it.
   kSweep,          ///< The stream did not start, or the sweep has failed: `status`.
+  kNoWire,         ///< A loopback that does not see its drive.
   kNoDevice,       ///< Neither points nor parameters.
   kNoPoints,       ///< The device is that of points, and there are none.
   kNoFit,          ///< The trials need the fit of before power off, of which u is left.
@@ -115,6 +117,10 @@ class Sequencer {
   Refusal measure_and_evaluate(hal::AnalogStream& stream, const SweepSettings& sweep,
                                const Settings& settings, Goal goal) noexcept;
 
+  /// A loopback, which leaves all results as they are. Where the stream has a switch, it is turned
+  /// for it; else somebody has connected a wire from the drive to both inputs.
+  Refusal loop_back(hal::AnalogStream& stream, const SweepSettings& settings) noexcept;
+
   /// An evaluation towards this goal. What is complete and holds for these settings is kept, so
   /// nothing may be left to do: it has then ended at once, and `failure()` says how.
   Refusal evaluate(const Settings& settings, Goal goal) noexcept;
@@ -161,6 +167,12 @@ class Sequencer {
     return has_fixed_point_ ? &workspace_.fixed_point : nullptr;
   }
   void forget_fixed_point() noexcept { has_fixed_point_ = false; }
+  /// @returns What the last loopback has found; null unless it has come to a good end and its
+  /// memory was not used since.
+  const LoopbackResults* loopback() const noexcept {
+    return has_loopback_ ? &workspace_.loopback.results() : nullptr;
+  }
+  void forget_loopback() noexcept { has_loopback_ = false; }
 
   // Memory.
 
@@ -175,6 +187,7 @@ class Sequencer {
   /// All of the memory that `borrow()` lends, for text. 66 KiB on a board.
   Span<char> borrow_all() noexcept {
     has_fixed_point_ = false;
+    has_loopback_ = false;
     return {static_cast<char*>(static_cast<void*>(&workspace_)), sizeof workspace_};
   }
 
@@ -186,6 +199,7 @@ class Sequencer {
     static_assert(alignof(Work) <= alignof(Workspace));
     static_assert(std::is_trivially_copyable_v<Work> && std::is_trivially_destructible_v<Work>);
     has_fixed_point_ = false;
+    has_loopback_ = false;
     return *static_cast<Work*>(static_cast<void*>(&workspace_));
   }
 
@@ -198,6 +212,7 @@ class Sequencer {
     EvaluationWorkspace evaluation;
     SweepWorkspace sweep;
     FixedPointRun fixed_point;
+    LoopbackRun loopback;
   };
 
   Sweep sweep_run() noexcept { return Sweep(sweep_, workspace_.sweep, *stream_); }
@@ -209,8 +224,9 @@ class Sequencer {
   void begin(Job job) noexcept;
   void end_sweep() noexcept;
   void end_evaluation() noexcept;
+  void end_loopback() noexcept;
 
-  hal::AnalogStream* stream_ = nullptr;  // Of the sweep that runs.
+  hal::AnalogStream* stream_ = nullptr;  // Of the sweep or loopback that runs.
   Span<double> trial_store_;
   Span<TrialPiece> trial_pieces_;
   EvaluationHelper* helper_ = nullptr;
@@ -222,6 +238,7 @@ class Sequencer {
   bool has_identification_ = false;
   bool evaluates_next_ = false;  // The sweep's points.
   bool has_fixed_point_ = false;
+  bool has_loopback_ = false;
   // Or the device by its parameters; zero, unlike its defaults.
   Identification identification_ = {Source::kPoints, {}, {}, 0.0, 0};
   FrequencyResponse points_;

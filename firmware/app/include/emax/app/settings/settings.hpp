@@ -59,6 +59,8 @@ struct Settings {
   Generator generator = Generator::k2006;
   std::array<double, kMaxTrendPoints> trend_s = {};
   std::size_t trend_count = 0;  ///< 0 for no trend, else 2 or more.
+  /// Of points that are handed over: expanded, common to all of them and within their U(A).
+  double common_percent = 0.0;
 };
 
 static_assert(std::is_trivially_copyable_v<Settings>);

@@ -21,6 +21,7 @@ namespace ranges {
 
 /// The shortest time that the console takes.
 inline constexpr double kNanoSecond = 1e-9;
+inline constexpr double kMaxCommonPercent = 50.0;
 
 }  // namespace ranges
 
@@ -145,6 +146,10 @@ inline constexpr SettingRow kSettingRows[] = {
                     "their energies",
                     "0.002,0.004,0.006,0.008,0.010"})
         .as_command("CALCulate:TRENd:TIME", "<T1>,...", "2 to 16 lengths for the trend"),
+    // Its command looks at the points, too, and its option belongs to their table.
+    setting("common part", EMAX_SETTING(Settings, common_percent), SettingGroup::kTrend,
+            Concern::kSweep)
+        .within(0.0, ranges::kMaxCommonPercent, "0 to 50 percent"),
 };
 
 static_assert(members_in(kSettingRows) == member_count<Settings>(), "a member without a row");

@@ -12,7 +12,14 @@
 
 namespace emax::app {
 
-inline constexpr std::size_t kMaxReferencePoints = 32;
+// 512 bytes of a board's memory for each 32: a PC has them, whose tables come from calibration
+// laboratories.
+#if EMAX_MAX_POINTS > 64
+#define EMAX_MAX_REFERENCE_POINTS 64
+#else
+#define EMAX_MAX_REFERENCE_POINTS 32
+#endif
+inline constexpr std::size_t kMaxReferencePoints = EMAX_MAX_REFERENCE_POINTS;
 inline constexpr std::size_t kMaxRepeats = 16;
 /// The largest frequency is the sample rate over this.
 inline constexpr double kMinSamplesPerPeriod = 2.5;

@@ -1,0 +1,213 @@
+// The stages of a loopback, and the straight line through its phases.
+#include "emax/app/measure/loopback.hpp"
+
+#include <algorithm>
+
+#include "emax/app/measure/sweep_budget.hpp"
+#include "emax/base/complex.hpp"
+#include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+
+namespace emax::app {
+namespace {
+
+constexpr double kLookShare = 0.01;       // Of the drive limit.
+constexpr double kDriveShare = 0.5;       // Of what is permitted.
+constexpr double kLongestPeriod = 512.0;  // In frames; each further frequency is twice the last.
+constexpr std::uint32_t kMeasuredFrames = 16384;
+constexpr std::uint32_t kSettlingFrames = 2048;
+// A wire has a gain of 1 but for what front ends are off by.
+constexpr double kLeastGain = 0.75;
+constexpr double kGreatestGain = 1.0 / kLeastGain;
+constexpr double kMostFramesOff = 16.0;  // Of the latency.
+constexpr double kStudent = 2.87;        // 95.45 %, four degrees of freedom.
+constexpr double kPercent = 100.0;
+
+double size_of(Complex number) noexcept { return sqrt(norm(number)); }
+
+double angle_of(Complex number) noexcept { return atan2(number.im, number.re); }
+
+bool is_near_one(double gain) noexcept { return gain > kLeastGain && gain < kGreatestGain; }
+
+}  // namespace
+
+Status LoopbackRun::start(hal::AnalogStream& stream, const SweepSettings& settings) noexcept {
+  const Status status = stream.start(drive_limits(settings, stream.format()));
+  if (status != Status::kOk) {
+    return status;
+  }
+  scales_ = full_scales(settings, stream.format());
+  format_ = stream.format();
+  format_.drive_full_scale_v = scales_.drive_v;
+  drive_.configure(format_, settings.drive_limit_v, settings.slew_v_per_s);
+  silence_.start(format_, scales_);
+  amplitude_v_ = std::min(settings.drive_limit_v, std::min(scales_.reference_v, scales_.device_v));
+  frequency_hz_ = format_.sample_rate_hz / kLongestPeriod;
+  left_ = silence_.frames();
+  target_ = 0;
+  stage_ = Stage::kSilence;
+  status_ = Status::kOk;
+  return Status::kOk;
+}
+
+void LoopbackRun::step(hal::AnalogStream& stream) noexcept {
+  if (done()) {
+    return;
+  }
+  std::array<hal::Word, hal::kMaxBlockFrames> words;
+  std::array<hal::Frame, hal::kMaxBlockFrames> drive;
+  std::array<hal::Frame, hal::kMaxBlockFrames> response;
+  const std::size_t count = format_.block_frames;
+  drive_.fill(Span<hal::Word>(words).first(count));
+  const hal::Exchange exchange = stream.exchange(Span<const hal::Word>(words).first(count),
+                                                 Span<hal::Frame>(response).first(count));
+  if (exchange.status != Status::kOk) {
+    end(exchange.status);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    drive[i] = {words[i], words[i]};
+  }
+  take(Span<const hal::Frame>(drive).first(count), Span<const hal::Frame>(response).first(count));
+  if (done()) {
+    (void)stream.stop();
+  }
+}
+
+void LoopbackRun::stop(hal::AnalogStream& stream) noexcept {
+  (void)stream.stop();
+  end(Status::kStopped);
+}
+
+double LoopbackRun::progress() const noexcept {
+  return done() ? 1.0 : static_cast<double>(target_) / static_cast<double>(kFrequencies + 1);
+}
+
+// What is left of the block when a stage ends belongs to settling, or to nothing.
+void LoopbackRun::take(Span<const hal::Frame> drive, Span<const hal::Frame> response) noexcept {
+  const std::size_t count = std::min<std::size_t>(left_, response.size());
+  if (stage_ == Stage::kSilence) {
+    silence_.add(response.first(count));
+  } else if (stage_ == Stage::kMeasuring) {
+    drive_fit_.add(drive.first(count));
+    response_fit_.add(response.first(count));
+  }
+  left_ -= static_cast<std::uint32_t>(count);
+  if (left_ == 0) {
+    end_stage();
+  }
+}
+
+void LoopbackRun::end_stage() noexcept {
+  switch (stage_) {
+    case Stage::kSilence:
+      end_silence();
+      return;
+    case Stage::kSettling:
+      stage_ = Stage::kMeasuring;
+      left_ = kMeasuredFrames;
+      // The rates were checked.
+      (void)response_fit_.start(frequency_hz_, format_.sample_rate_hz,
+                                hal::volts_per_word(scales_.reference_v));
+      (void)drive_fit_.start(frequency_hz_, format_.sample_rate_hz,
+                             hal::volts_per_word(scales_.drive_v));
+      return;
+    case Stage::kMeasuring:
+      end_target();
+      return;
+    case Stage::kDone:
+      return;
+  }
+}
+
+void LoopbackRun::end_silence() noexcept {
+  const SilentChannel reference = silence_.reference();
+  const SilentChannel device = silence_.device();
+  results_.reference_offset_v = reference.offset_v;
+  results_.device_offset_v = device.offset_v;
+  results_.reference_noise_v = reference.noise_v;
+  results_.device_noise_v = device.noise_v;
+  begin_target();
+}
+
+void LoopbackRun::begin_target() noexcept {
+  const double wanted_v = target_ == 0 ? kLookShare * amplitude_v_ : kDriveShare * amplitude_v_;
+  const double amplitude_v = std::min(wanted_v, drive_.max_amplitude_v(frequency_hz_));
+  left_ = drive_.go_to(frequency_hz_, amplitude_v) + format_.latency_frames + kSettlingFrames;
+  stage_ = Stage::kSettling;
+}
+
+void LoopbackRun::end_target() noexcept {
+  const SineFitResult drive = drive_fit_.reference();
+  const SineFitResult reference = response_fit_.reference();
+  const SineFitResult device =
+      in_volts(response_fit_.device(), scales_.device_v / scales_.reference_v);
+  // The first two are of the same frequency.
+  if (target_ < 2 && !is_wired(drive, reference, device)) {
+    end(Status::kNoReference);
+    return;
+  }
+  if (target_ > 0) {
+    const Complex ratio = device.phasor() / reference.phasor();
+    ratios_[target_ - 1] = size_of(ratio);
+    phases_rad_[target_ - 1] = angle_of(ratio);
+    frequency_hz_ *= 2.0;
+  }
+  ++target_;
+  if (target_ > kFrequencies) {
+    evaluate();
+    end(Status::kOk);
+    return;
+  }
+  begin_target();
+}
+
+bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& reference,
+                           const SineFitResult& device) noexcept {
+  const double turns = angle_of(drive.phasor() / reference.phasor()) / kTwoPi;
+  results_.latency_frames = kLongestPeriod * (turns - floor(turns));
+  results_.reference_gain = reference.amplitude_v / drive.amplitude_v;
+  results_.device_gain = device.amplitude_v / drive.amplitude_v;
+  results_.distortion_percent =
+      kPercent * distortion_of(reference.residual_std_v, results_.reference_noise_v,
+                               reference.amplitude_v, static_cast<double>(reference.samples));
+  const double off = results_.latency_frames - static_cast<double>(format_.latency_frames);
+  return is_near_one(results_.reference_gain) && is_near_one(results_.device_gain) &&
+         abs(off) < kMostFramesOff;
+}
+
+void LoopbackRun::evaluate() noexcept {
+  constexpr auto kCount = static_cast<double>(kFrequencies);
+  double sum = 0.0;
+  double slope = 0.0;
+  double squares = 0.0;
+  double omega = kTwoPi * format_.sample_rate_hz / kLongestPeriod;
+  const double first = omega;
+  for (std::size_t i = 0; i < kFrequencies; ++i) {
+    sum += ratios_[i];
+    slope += omega * phases_rad_[i];
+    squares += omega * omega;
+    omega *= 2.0;
+  }
+  results_.ratio = sum / kCount;
+  results_.skew_s = slope / squares;
+  double scatter = 0.0;
+  double rest = 0.0;
+  omega = first;
+  for (std::size_t i = 0; i < kFrequencies; ++i) {
+    const double off = ratios_[i] - results_.ratio;
+    const double phase_off = phases_rad_[i] - omega * results_.skew_s;
+    scatter += off * off;
+    rest += phase_off * phase_off;
+    omega *= 2.0;
+  }
+  results_.ratio_percent = kPercent * kStudent * sqrt(scatter / (kCount - 1.0)) / results_.ratio;
+  results_.skew_expanded_s = kStudent * sqrt(rest / ((kCount - 1.0) * squares));
+}
+
+void LoopbackRun::end(Status status) noexcept {
+  status_ = status;
+  stage_ = Stage::kDone;
+}
+
+}  // namespace emax::app
