@@ -647,5 +647,42 @@ TEST(SimBench, RefusesBadFormats) {
   EXPECT_EQ(answer({1e5, 10.0, 10.0, 64, 128}), Status::kInvalidArgument);
 }
 
+// A wire: what goes out comes in, word for word, and the device's input sees it later. The shaker
+// does not move.
+TEST(SimBench, LoopBackFeedsTheDriveToBothInputs) {
+  BenchSettings settings;
+  settings.noise_v = 0.0;
+  settings.offset_v = 0.0;
+  settings.hum_v = 0.0;
+  settings.gain_expanded_percent = 0.0;
+  settings.mounting_expanded_percent = 0.0;
+  settings.skew_s = 2.5e-6;  // A quarter of an interval.
+  settings.ideal_converters = true;
+  SimBench bench;
+  ASSERT_EQ(bench.configure(settings), Status::kOk);
+  EXPECT_TRUE(bench.loop_back(true));
+  ASSERT_EQ(bench.start({1 << 30, 1 << 24}), Status::kOk);
+  EXPECT_FALSE(bench.loop_back(false)) << "while it runs";
+  constexpr double kStep = 0.02;  // rad per frame.
+  constexpr std::size_t kBlock = kBenchFormat.block_frames;
+  std::array<Word, kBlock> words = {};
+  std::array<Frame, kBlock> frames = {};
+  const auto drive = [](double frame) { return 1e8 * std::sin(kStep * frame); };
+  for (std::uint64_t first = 0; first < 10 * kBlock; first += kBlock) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      words[i] = static_cast<Word>(drive(static_cast<double>(first + i)));
+    }
+    ASSERT_EQ(bench.exchange(Span<const Word>(words), Span<Frame>(frames)).status, Status::kOk);
+    for (std::size_t i = 0; i < kBlock && first > 0; ++i) {
+      const double sent = static_cast<double>(first + i) - kBenchFormat.latency_frames;
+      EXPECT_NEAR(frames[i].reference, drive(sent), 2.0);
+      EXPECT_NEAR(frames[i].device, drive(sent + 0.25), 10.0) << "0.006 (0.02)^4 of 1e8, and bits";
+    }
+  }
+  EXPECT_EQ(bench.peak_mps2(), 0.0);
+  (void)bench.stop();
+  EXPECT_TRUE(bench.loop_back(false));
+}
+
 }  // namespace
 }  // namespace emax::test

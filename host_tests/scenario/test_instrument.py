@@ -182,12 +182,56 @@ class InstrumentFaults(ProgramTest):
             with Peer(behave) as peer:
                 self.refuse(["report", "--instrument", peer.port], "the connection was closed", status=3)
 
-    def test_one_that_does_not_answer(self) -> None:
-        with Peer(answer_lines({b"*IDN": b"emax,x,0,1;0\n"})) as peer:
-            self.refuse(["report", "--instrument", peer.port], "no answer for 10 s", status=3)
+    def test_patience_has_an_end(self) -> None:
+        """10 s for all of an answer, however many bytes of it come one by one; what came is named."""
+        def talk_on(peer: socket.socket) -> None:
+            with peer.makefile("rb") as lines:
+                lines.readline()
+                peer.sendall(b"emax,x,0,1;0\n")
+                lines.readline()
+                try:
+                    while True:
+                        peer.sendall(b"a")
+                        time.sleep(0.2)
+                except OSError:  # The program has gone.
+                    pass
+        cases = [(answer_lines({b"*IDN": b"emax,x,0,1;0\n"}), "no answer for 10 s"),
+                 (answer_lines({b"*IDN": b"OTHER,1,2,3\n"}), 'answers "OTHER,1,2,3" to *IDN?; expected an emax'),
+                 (answer_lines({b"*IDN": b"OTHER,1,2,3"}), 'answers "OTHER,1,2,3" to *IDN?; expected an emax'),
+                 (talk_on, 'no end of an answer within 10 s; it begins with "aaa')]
+        begin = time.monotonic()
+        peers = [Peer(behave) for behave, _ in cases]
+        programs = [self.start_program("report", "--instrument", peer.port) for peer in peers]
+        for program, peer, (_, words) in zip(programs, peers, cases):
+            output, errors = program.communicate(timeout=PATIENCE)
+            self.assertEqual((program.returncode, output), (3, b""))
+            self.assert_one_line(errors, words)
+            with peer:
+                pass
+        self.assertLess(time.monotonic() - begin, 30.0)
+
+    def test_one_that_is_lost_in_its_sweep(self) -> None:
+        """The points that it has told until then are kept, and it is said that they have no uncertainties yet."""
+        with TcpInstrument("--pace", "1") as remote:
+            process = self.start_program("report", "--instrument", remote.port, "--out", "out")
+            time.sleep(4.5)
+            remote.process.kill()
+            output, errors = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 3)
+        self.assert_one_line(errors, "the connection was closed", "without uncertainties", "interrupted_points.csv")
+        rows = output.decode().splitlines()
+        self.assertEqual(rows[0], "f_hz,amplitude,phase_deg")
+        self.assertGreater(len(rows), 3)
+        self.assertIn(f"; {len(rows) - 1} points,".encode(), errors)
+        self.assertEqual((self.directory / "out/interrupted_points.csv").read_bytes(), output)
+        self.succeed("report", *QUICK, "--out", "whole")
+        table = (self.directory / "whole/frequency_response.csv").read_text().splitlines()
+        for kept, measured in zip(rows[1:], table[1:]):
+            for one, other in zip(kept.split(","), measured.split(",")):
+                self.assertAlmostEqual(float(one), float(other), delta=1e-12 * abs(float(other)))
 
     def test_one_whose_answer_is_no_sweep(self) -> None:
-        talk = {b"*IDN": b"emax,x,0,1;0\n", b"SYST:ERR": b'0,"No error"\n', b"PROG": b'100,"idle";0\n'}
+        talk = {b"*IDN": b"emax,x,0,1;0\n", b"SYST:ERR": b'0,"No error"\n', b"PROG": b'100,"idle";0;0\n'}
         for json_answer, words in ((b"#15{\"a\":\n", "no JSON"), (b"#12{}\n", "does not tell the setting"),
                                    (b"1\n", "not answered with a block")):
             with Peer(answer_lines(talk | {b"JSON": json_answer})) as peer:

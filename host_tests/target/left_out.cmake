@@ -40,6 +40,11 @@ emax_leave_out(test_evaluation_figures
   EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom
   EvaluationFigures.GuardsEachUncertainty)
 
+emax_leave_out(test_instrument_work InstrumentSweep.BeginsAnewRightAfterAnAbort)
+emax_leave_out(test_loopback
+  Loopback.FindsRatioAndSkewWithinWhatItStates
+  InstrumentLoopback.CorrectionsTakeTheErrorsOut)
+
 # Slow ones, measured; the board's limit keeps all the others together at a minute or so.
 get_property(left_out GLOBAL PROPERTY EMAX_LEFT_OUT_TESTS)
 list(JOIN left_out "\n" left_out)

@@ -10,6 +10,8 @@ using hal::Frame;
 using hal::StreamFormat;
 using hal::Word;
 
+constexpr std::int64_t kWordsPerCode = std::int64_t{1} << (32U - kDacBits);
+
 bool positive(double x) noexcept { return x > 0.0 && is_finite(x); }
 
 bool full_scale_ok(double volts) noexcept { return volts >= 0.0 && is_finite(volts); }
@@ -147,9 +149,9 @@ Frame SimBench::advance(Word word) noexcept {
   for (const Fault& fault : faults) {
     stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
   }
-  const double skew = truth().skew_s * truth().clock_factor * format().sample_rate_hz;
-  const BenchVolts volts = is_looped_ ? bench_.step_wired(drive_v(word_at(now)), wire_v(now, skew))
-                                      : bench_.step(drive_v(word_at(now)));
+  const double now_v = drive_v(word_at(now));
+  const BenchVolts volts =
+      hal::kHasLoopback && is_looped_ ? bench_.step_wired(now_v, later_v(now)) : bench_.step(now_v);
   Frame frame{digitised(volts.reference_v * adc_.reference_codes_per_v),
               digitised(volts.device_v * adc_.device_codes_per_v)};
   if (stuck_) {
@@ -163,17 +165,29 @@ Word SimBench::word_at(std::uint64_t frame) const noexcept {
   return pipeline_[static_cast<std::size_t>(frame % pipeline_.size())];
 }
 
-/// The drive on the wire by this part of an interval after that frame: by the polynomial through
-/// the four words around it, off by 0.023 (2 pi f/rate)^4 of the amplitude at most.
-double SimBench::wire_v(std::uint64_t frame, double later) const noexcept {
-  const double before = drive_v(word_at(frame - 1));
-  const double at = drive_v(word_at(frame));
-  const double next = drive_v(word_at(frame + 1));
-  const double second = drive_v(word_at(frame + 2));
-  const double x = later;
-  return at +
-         x * (next - before / 3.0 - 0.5 * at - second / 6.0 +
-              x * (0.5 * (before + next) - at + x * ((second - before) / 6.0 + 0.5 * (at - next))));
+/// The word of that frame as the DAC hands it out, without the bits that it drops.
+std::int64_t SimBench::code_at(std::uint64_t frame) const noexcept {
+  const std::int64_t word = word_at(frame);
+  return settings().ideal_converters ? word : word & -kWordsPerCode;
+}
+
+/// The drive on the wire, as far behind that frame as the device's input samples later: by the
+/// polynomial through the four words around it, in integers. Up to a 32nd of the rate its skew is
+/// off by 2.5e-5 of an interval at most.
+double SimBench::later_v(std::uint64_t frame) const noexcept {
+  constexpr int kBits = 20;
+  const double intervals = truth().skew_s * truth().clock_factor * format().sample_rate_hz;
+  const auto x = static_cast<std::int64_t>(intervals * (std::int64_t{1} << kBits));
+  const std::int64_t before = code_at(frame - 1);
+  const std::int64_t at = code_at(frame);
+  const std::int64_t next = code_at(frame + 1);
+  const std::int64_t second = code_at(frame + 2);
+  // Six times the coefficients.
+  const std::int64_t cubic = second - before + 3 * (at - next);
+  const std::int64_t square = 3 * (before + next) - 6 * at + ((cubic * x) >> kBits);
+  const std::int64_t slope = 6 * next - 2 * before - 3 * at - second + ((square * x) >> kBits);
+  const std::int64_t word = at + ((slope * x) >> kBits) / 6;
+  return static_cast<double>(word) / hal::kWordsPerFullScale * drive_full_scale_v_;
 }
 
 void SimBench::record(Word word) noexcept {
@@ -192,7 +206,6 @@ double SimBench::drive_v(Word word) const noexcept {
   double codes = static_cast<double>(word) / hal::kWordsPerFullScale;
   if (!settings().ideal_converters) {
     constexpr std::int64_t kHalfScale = std::int64_t{1} << (kDacBits - 1U);
-    constexpr std::int64_t kWordsPerCode = std::int64_t{1} << (32U - kDacBits);
     // Above zero while it is divided, so that it rounds down.
     const std::int64_t code = (word + kHalfScale * kWordsPerCode) / kWordsPerCode - kHalfScale;
     codes = static_cast<double>(code) / kHalfScale;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -34,12 +36,24 @@ class Dice {
     return z ^ (z >> 31U);
   }
   std::size_t below(std::size_t end) { return bits() % end; }
-  /// From 0 to below 1, in all its digits.
+  /// From 0 to below 1.
   double share() { return static_cast<double>(bits() >> 11U) * 0x1p-53; }
-  double within(double low, double high) { return low + (high - low) * share(); }
-  double log_within(double low, double high) { return low * std::pow(high / low, share()); }
+  double within(double low, double high) { return with_digits(low + (high - low) * share()); }
+  double log_within(double low, double high) {
+    return with_digits(low * std::pow(high / low, share()));
+  }
 
  private:
+  // A PC takes a message with all digits of all numbers; on a board a dozen of each must do.
+  static double with_digits(double value) {
+    if (kMaxPoints > 64) {
+      return value;
+    }
+    char text[32];
+    (void)std::snprintf(text, sizeof text, "%.12g", value);
+    return std::strtod(text, nullptr);
+  }
+
   std::uint64_t state_;
 };
 
@@ -93,7 +107,7 @@ SweepSettings draw_sweep(Dice& dice, const SweepSettings& by_default) {
   s.frequency_count = draw_count(dice, 3, kMaxPoints);
   draw_list(dice, s.frequency_count, 0.1, 39999.0, s.frequency_hz);
   s.level_mps2 = dice.log_within(1e-6, 1e6);
-  s.acceleration_limit_mps2 = s.level_mps2 * dice.within(1.0, 10.0);
+  s.acceleration_limit_mps2 = s.level_mps2 * dice.within(1.01, 10.0);
   s.drive_full_scale_v = dice.log_within(1e-3, 1e4);
   s.drive_limit_v = s.drive_full_scale_v * dice.within(0.01, 1.0);
   s.slew_v_per_s = s.drive_limit_v * dice.log_within(400.0, 4000.0);

@@ -29,6 +29,12 @@ sim::BenchSettings off_bench(std::uint64_t seed) {
 
 class Loopback : public testing::Test {
  protected:
+  void SetUp() override {
+    if (!app::kHasLoopback) {
+      GTEST_SKIP() << "left out of this build";
+    }
+  }
+
   bool run(const sim::BenchSettings& settings) {
     EXPECT_EQ(bench_.configure(settings), Status::kOk);
     EXPECT_FALSE(sequencer_.loop_back(bench_, app::default_sweep_settings()));
@@ -120,8 +126,10 @@ TEST_F(Loopback, EndsAtOnceOnRequest) {
   EXPECT_FALSE(bench_.running());
 }
 
+class InstrumentLoopback : public Loopback {};
+
 // Loopback, corrections, sweep: the device is found although the channels are 3 % and 3 us apart.
-TEST(InstrumentLoopback, CorrectionsTakeTheErrorsOut) {
+TEST_F(InstrumentLoopback, CorrectionsTakeTheErrorsOut) {
   int covered = 0;
   constexpr int kBenches = 6;
   for (int seed = 1; seed <= kBenches; ++seed) {
@@ -147,7 +155,7 @@ TEST(InstrumentLoopback, CorrectionsTakeTheErrorsOut) {
   EXPECT_GE(covered, kBenches - 2);
 }
 
-TEST(InstrumentLoopback, AnswersItsNumbersAndKeepsThePoints) {
+TEST_F(InstrumentLoopback, AnswersItsNumbersAndKeepsThePoints) {
   InstrumentBench i;
   EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
   const std::string points = i.ask("FETC:FRES?");
@@ -162,7 +170,7 @@ TEST(InstrumentLoopback, AnswersItsNumbersAndKeepsThePoints) {
   EXPECT_EQ(i.errors(), "");
 }
 
-TEST(InstrumentLoopback, SaysWhereTheDriveDoesNotComeIn) {
+TEST_F(InstrumentLoopback, SaysWhereTheDriveDoesNotComeIn) {
   sim::BenchSettings settings;
   settings.fault = {sim::FaultKind::kUnpluggedDevice, 0};
   InstrumentBench i(settings);
@@ -172,7 +180,7 @@ TEST(InstrumentLoopback, SaysWhereTheDriveDoesNotComeIn) {
   EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale\"\n");
 }
 
-TEST(InstrumentLoopback, EndsByAnAbort) {
+TEST_F(InstrumentLoopback, EndsByAnAbort) {
   InstrumentBench i;
   i.send("DIAG:LOOP?");
   i.poll(600);

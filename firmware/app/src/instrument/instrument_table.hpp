@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emax/app/measure/loopback.hpp"
 #include "emax/app/scpi/command.hpp"
 #include "emax/app/scpi/standard_commands.hpp"
 
@@ -69,7 +70,6 @@ inline constexpr scpi::Command<Instrument> kCommon[] = {
     {"[SENSe:]REFerence:SENSitivity", kBoth, "<V/(m/s2)>[,<percent>]", "Of the reference sensor, and its expanded uncertainty", kLearned, C::reference},
     {"[SENSe:]REFerence:TABLe", kBoth, "<f1>,<S1>,...", "Of the reference over frequency, 2 to 32 pairs, on a PC 64; 0,S where it is one value", kPlain, C::reference_table},
     {"[SENSe:]REFerence:TABLe:CLEar", kSet, "", "One value again: the first of the table", kPlain, C::clear_reference_table},
-    {"[SENSe:]CORRection:ACQuire", kBoth, "", "The same loopback, kept as RATio and SKEW; answers these: ratio,percent,skew,s", kPlain, C::acquire_corrections},
     {"[SENSe:]SWEep:FREQuency", kBoth, "<f1>,...", "3 to 64 frequencies, on a PC 1024, ascending", kPlain, C::sweep_frequencies},
     {"[SENSe:]SWEep:FREQuency:DEFault", kSet, "", "The 42 frequencies of the default sweep", kPlain, C::default_frequencies},
 };
@@ -115,9 +115,13 @@ inline constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
     {"CALCulate:REPort", kQuery, "[<device>,<serial>,<operator>,<date>,<note>]", "The text of emax report, as a block; labels are strings, in ASCII", kPlain, C::report_text},
 
-    {"DIAGnostic:LOOPback", kQuery, "", "With a wire from drive to both inputs: latency,offset_r,offset_d,gain_r,gain_d,ratio,skew,noise_r,noise_d,thd,lost", kPlain, C::loopback},
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},
+};
+
+inline constexpr scpi::Command<Instrument> kLoopback[] = {
+    {"DIAGnostic:LOOPback", kQuery, "", "With a wire from drive to both inputs: latency,offset_r,offset_d,gain_r,gain_d,ratio,skew,noise_r,noise_d,thd,lost", kPlain, C::loopback},
+    {"[SENSe:]CORRection:ACQuire", kBoth, "", "The same loopback, kept as RATio and SKEW; answers these: ratio,percent,skew,s", kPlain, C::acquire_corrections},
 };
 // clang-format on
 
@@ -129,8 +133,8 @@ constexpr std::size_t size_of(const scpi::Command<Instrument> (&/*part*/)[kSize]
 // In the order of the list in the README. The settings come from their rows, group by group.
 constexpr auto all_commands() noexcept {
   constexpr std::size_t kRoom = size_of(kCommon) + size_of(kWork) + size_of(kEnergy) +
-                                size_of(kUncertainty) + count_commands(kSettingRows) +
-                                count_commands(kSweepSettingRows);
+                                size_of(kUncertainty) + (kHasLoopback ? size_of(kLoopback) : 0) +
+                                count_commands(kSettingRows) + count_commands(kSweepSettingRows);
   CommandTable<kRoom> table;
   table.add(kCommon);
   for (const SettingGroup group :
@@ -147,6 +151,9 @@ constexpr auto all_commands() noexcept {
     table.add_settings<SettingsOf::kEvaluation>(kSettingRows, group);
   }
   table.add(kUncertainty);
+  if constexpr (kHasLoopback) {
+    table.add(kLoopback);
+  }
   return table;
 }
 

@@ -2,6 +2,7 @@
 #include "emax/app/measure/loopback.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "emax/app/measure/sweep_budget.hpp"
 #include "emax/base/complex.hpp"
@@ -23,9 +24,12 @@ constexpr double kMostFramesOff = 16.0;  // Of the latency.
 constexpr double kStudent = 2.87;        // 95.45 %, four degrees of freedom.
 constexpr double kPercent = 100.0;
 
-double size_of(Complex number) noexcept { return sqrt(norm(number)); }
-
 double angle_of(Complex number) noexcept { return atan2(number.im, number.re); }
+
+/// From a sum of squares, which rounding may leave below zero.
+double expanded(double squares) noexcept {
+  return squares > 0.0 ? 0.5 * kStudent * sqrt(squares) : 0.0;
+}
 
 bool is_near_one(double gain) noexcept { return gain > kLeastGain && gain < kGreatestGain; }
 
@@ -43,6 +47,10 @@ Status LoopbackRun::start(hal::AnalogStream& stream, const SweepSettings& settin
   silence_.start(format_, scales_);
   amplitude_v_ = std::min(settings.drive_limit_v, std::min(scales_.reference_v, scales_.device_v));
   frequency_hz_ = format_.sample_rate_hz / kLongestPeriod;
+  ratios_ = 0.0;
+  ratios2_ = 0.0;
+  phases2_ = 0.0;
+  phases_by_frequency_ = 0.0;
   left_ = silence_.frames();
   target_ = 0;
   stage_ = Stage::kSilence;
@@ -149,8 +157,12 @@ void LoopbackRun::end_target() noexcept {
   }
   if (target_ > 0) {
     const Complex ratio = device.phasor() / reference.phasor();
-    ratios_[target_ - 1] = size_of(ratio);
-    phases_rad_[target_ - 1] = angle_of(ratio);
+    const double off = sqrt(norm(ratio)) - 1.0;
+    const double phase = angle_of(ratio);
+    ratios_ += off;
+    ratios2_ += off * off;
+    phases2_ += phase * phase;
+    phases_by_frequency_ += phase * static_cast<double>(1U << (target_ - 1));
     frequency_hz_ *= 2.0;
   }
   ++target_;
@@ -176,33 +188,19 @@ bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& refe
          abs(off) < kMostFramesOff;
 }
 
+// Of phases that lie on a straight line through zero, up to what is left over.
 void LoopbackRun::evaluate() noexcept {
   constexpr auto kCount = static_cast<double>(kFrequencies);
-  double sum = 0.0;
-  double slope = 0.0;
-  double squares = 0.0;
-  double omega = kTwoPi * format_.sample_rate_hz / kLongestPeriod;
-  const double first = omega;
-  for (std::size_t i = 0; i < kFrequencies; ++i) {
-    sum += ratios_[i];
-    slope += omega * phases_rad_[i];
-    squares += omega * omega;
-    omega *= 2.0;
-  }
-  results_.ratio = sum / kCount;
-  results_.skew_s = slope / squares;
-  double scatter = 0.0;
-  double rest = 0.0;
-  omega = first;
-  for (std::size_t i = 0; i < kFrequencies; ++i) {
-    const double off = ratios_[i] - results_.ratio;
-    const double phase_off = phases_rad_[i] - omega * results_.skew_s;
-    scatter += off * off;
-    rest += phase_off * phase_off;
-    omega *= 2.0;
-  }
-  results_.ratio_percent = kPercent * kStudent * sqrt(scatter / (kCount - 1.0)) / results_.ratio;
-  results_.skew_expanded_s = kStudent * sqrt(rest / ((kCount - 1.0) * squares));
+  constexpr double kSquares = 341.0;  // Of the frequencies.
+  const double omega = kTwoPi * format_.sample_rate_hz / kLongestPeriod;
+  const double mean = ratios_ / kCount;
+  const double slope = phases_by_frequency_ / kSquares;
+  const double scatter = ratios2_ - kCount * mean * mean;
+  const double rest = phases2_ - kSquares * slope * slope;
+  results_.ratio = 1.0 + mean;
+  results_.ratio_percent = kPercent * expanded(scatter);
+  results_.skew_s = slope / omega;
+  results_.skew_expanded_s = expanded(rest / kSquares) / omega;
 }
 
 void LoopbackRun::end(Status status) noexcept {

@@ -149,6 +149,15 @@ Refusal Sequencer::loop_back(hal::AnalogStream& stream, const SweepSettings& set
   return {};
 }
 
+void Sequencer::step_loopback() noexcept {
+  if constexpr (kHasLoopback) {
+    workspace_.loopback.step(*stream_);
+    if (workspace_.loopback.done()) {
+      end_loopback();
+    }
+  }
+}
+
 void Sequencer::end_loopback() noexcept {
   job_ = Job::kNone;
   (void)stream_->loop_back(false);
@@ -276,10 +285,7 @@ void Sequencer::step() noexcept {
       }
       return;
     case Job::kLoopback:
-      workspace_.loopback.step(*stream_);
-      if (workspace_.loopback.done()) {
-        end_loopback();
-      }
+      step_loopback();
       return;
     case Job::kEvaluation:
       evaluation_run().step();
@@ -300,9 +306,11 @@ void Sequencer::abort() noexcept {
     sweep_run().stop();
     (void)sweep_.copy_to(points_);
   }
-  if (job_ == Job::kLoopback) {
-    workspace_.loopback.stop(*stream_);
-    (void)stream_->loop_back(false);
+  if constexpr (kHasLoopback) {
+    if (job_ == Job::kLoopback) {
+      workspace_.loopback.stop(*stream_);
+      (void)stream_->loop_back(false);
+    }
   }
   if (job_ == Job::kEvaluation) {
     evaluation_run().stop();
@@ -317,7 +325,7 @@ double Sequencer::progress() const noexcept {
     case Job::kSweep:
       return sweep_.progress();
     case Job::kLoopback:
-      return workspace_.loopback.progress();
+      return kHasLoopback ? workspace_.loopback.progress() : 1.0;
     case Job::kEvaluation:
       return workspace_.evaluation.progress();
     case Job::kFixedPoint:

@@ -93,7 +93,8 @@ class SimBench final : public hal::AnalogStream {
 
   hal::Frame advance(hal::Word word) noexcept;
   hal::Word word_at(std::uint64_t frame) const noexcept;
-  double wire_v(std::uint64_t frame, double later) const noexcept;
+  std::int64_t code_at(std::uint64_t frame) const noexcept;
+  double later_v(std::uint64_t frame) const noexcept;
   void record(hal::Word word) noexcept;
   bool event_due(FaultKind kind) noexcept;
   double drive_v(hal::Word word) const noexcept;

@@ -1,7 +1,6 @@
 // Measures the front end by a wire that feeds the drive to both inputs.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -15,6 +14,8 @@
 #include "emax/identify/frame_sine_fit.hpp"
 
 namespace emax::app {
+
+using hal::kHasLoopback;
 
 /// What a loopback finds. Volts are outside the front end, as the full scales state them.
 struct LoopbackResults {
@@ -79,8 +80,11 @@ class LoopbackRun {
   FrameSineFit response_fit_;
   FrameSineFit drive_fit_;  // Of the drive's words, in both channels.
   LoopbackResults results_;
-  std::array<double, kFrequencies> ratios_ = {};
-  std::array<double, kFrequencies> phases_rad_ = {};
+  // Sums over the frequencies, which are 1, 2, 4, 8 and 16 in units of the first.
+  double ratios_ = 0.0;  // Less 1.
+  double ratios2_ = 0.0;
+  double phases2_ = 0.0;
+  double phases_by_frequency_ = 0.0;
   double amplitude_v_ = 0.0;
   double frequency_hz_ = 0.0;
   std::uint32_t left_ = 0;    // Frames until this stage ends.

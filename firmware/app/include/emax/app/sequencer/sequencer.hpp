@@ -224,6 +224,7 @@ class Sequencer {
   void begin(Job job) noexcept;
   void end_sweep() noexcept;
   void end_evaluation() noexcept;
+  void step_loopback() noexcept;
   void end_loopback() noexcept;
 
   hal::AnalogStream* stream_ = nullptr;  // Of the sweep or loopback that runs.
