@@ -18,6 +18,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   RUNNER <word>...       Begins a command line that runs an image as if it were a program of this PC:
 #                          <word>... [--console null|tcp:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]. Without it,
 #                          nothing of the board is run in the tests. common/qemu.py makes one of QEMU.
+#   TELNET_BREAK           RUNNER's --console telnet:PORT passes on the break of that protocol.
 #   FLASH <word>...        The command that puts the product on the board, with @IMAGE@ for its path: target `flash`. Then
 #                          there are a .bin and a .hex of it, too.
 #   COUNTER <file>         Counts instructions for the image of the costs (emax/board/instruction_counter.hpp),
@@ -29,7 +30,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   GOOGLETEST_MEMORY <file>  Memory map for the PC's tests as images: regions `code` and `ram`, of megabytes.
 #   SLOW_TEST_S <s>        What of these takes longer is left out; slow_tests.txt in the board's folder lists it.
 function(emax_declare_board)
-  set(flags SIMULATED_BENCH WATCHDOG WITHOUT_LOOPBACK SEMIHOSTING)
+  set(flags SIMULATED_BENCH WATCHDOG WITHOUT_LOOPBACK SEMIHOSTING TELNET_BREAK)
   set(values CORE CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
   set(lists SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "${flags}" "${values}" "${lists}")

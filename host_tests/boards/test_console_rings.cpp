@@ -120,4 +120,26 @@ TEST(ByteRing, LeavesTheByteAloneIfThereIsNone) {
   EXPECT_EQ(byte, 'k');
 }
 
+TEST(ConsoleRings, ABreakDropsWhatCameBeforeIt) {
+  ConsoleRings rings;
+  const auto read = [&rings] {
+    std::array<char, 16> bytes = {};
+    return std::string(bytes.data(), rings.read(Span<char>(bytes)));
+  };
+  EXPECT_FALSE(rings.take_break());
+  rings.received('a');
+  rings.broken();
+  rings.received('b');
+  EXPECT_TRUE(rings.take_break());
+  EXPECT_FALSE(rings.take_break());
+  EXPECT_EQ(read(), "b");
+  for (std::size_t i = 0; i < kReceiveRoom; ++i) {
+    rings.received('x');
+  }
+  rings.broken();  // No byte more has room.
+  EXPECT_TRUE(rings.take_break());
+  rings.received('c');
+  EXPECT_EQ(read(), "c");
+}
+
 }  // namespace

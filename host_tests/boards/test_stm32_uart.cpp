@@ -115,11 +115,15 @@ TEST(Stm32Uart, DropsWhatIsDamagedAndCountsIt) {
   EXPECT_EQ(bench.uart().take_lost_count(), 2U);
 }
 
-TEST(Stm32Uart, DropsABreak) {
+TEST(Stm32Uart, TellsABreak) {
   Bench bench;
+  EXPECT_FALSE(bench.uart().take_break());
+  bench.chip().receive('a');
   bench.chip().receive('\0', FakeUart::kFramingError);
   bench.chip().receive('*');
-  EXPECT_LT(bench.chip().interrupt(), 5);
+  EXPECT_LT(bench.chip().interrupt(), 6);
+  EXPECT_TRUE(bench.uart().take_break());
+  EXPECT_FALSE(bench.uart().take_break());
   EXPECT_EQ(bench.read(), "*");
   EXPECT_EQ(bench.uart().take_lost_count(), 0U);
 }

@@ -1,15 +1,22 @@
 // The image to be flashed, as it is: boot, console, sweep, faults, store, watchdog, in the virtual
 // chip.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <sys/wait.h>
+#include <termios.h>
+#include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "chip/virtual_board.hpp"
@@ -295,6 +302,102 @@ TEST_P(PowerCutAt, LeavesTheOldOrTheNewSettings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Chip, PowerCutAt, testing::Range(0U, kShares));
+
+/// A pseudo terminal that stands for the serial line between a program of the PC and the board.
+class SerialLine {
+ public:
+  SerialLine() : board_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    if (board_ < 0 || grantpt(board_) != 0 || unlockpt(board_) != 0) {
+      return;
+    }
+    name_ = ptsname(board_);
+    // Held open and raw: the line is there before and after its program.
+    program_ = open(name_.c_str(), O_RDWR | O_NOCTTY);
+    termios line = {};
+    tcgetattr(program_, &line);
+    cfmakeraw(&line);
+    tcsetattr(program_, TCSANOW, &line);
+  }
+  SerialLine(const SerialLine&) = delete;
+  SerialLine& operator=(const SerialLine&) = delete;
+  ~SerialLine() {
+    close(program_);
+    close(board_);
+  }
+  const std::string& name() const { return name_; }
+
+  /// Hands over what both sides have sent.
+  void carry(Lpuart& console) const {
+    char bytes[256];
+    const ssize_t count = read(board_, bytes, sizeof bytes);
+    if (count > 0) {
+      console.send(std::string(bytes, static_cast<std::size_t>(count)));
+    }
+    const std::string sent = console.take_sent();
+    if (!sent.empty()) {
+      ASSERT_EQ(write(board_, sent.data(), sent.size()), static_cast<ssize_t>(sent.size()));
+    }
+  }
+
+ private:
+  int board_;
+  int program_ = -1;
+  std::string name_;
+};
+
+// The program on the PC is the front end of the board: it sets it up, has it measure, and
+// evaluates.
+TEST_F(RealImage, MeasuresForTheReportOfThePc) {
+  if (!std::ifstream(EMAX_CHIP_PROGRAM)) {
+    GTEST_SKIP() << "no " EMAX_CHIP_PROGRAM;
+  }
+  boot();
+  ASSERT_TRUE(answers(1.0));
+  const SerialLine line;
+  const std::string command = std::string(EMAX_CHIP_PROGRAM " report --instrument ") + line.name() +
+                              " --frequencies 900,2500,5000 --trials 1000 --trend none 2>&1";
+  std::string output;
+  int status = -1;
+  std::atomic<bool> has_ended = false;
+  std::thread program([&] {
+    FILE* const pipe = popen(command.c_str(), "r");
+    char bytes[256];
+    for (std::size_t count = 1; pipe != nullptr && count > 0;) {
+      count = fread(bytes, 1, sizeof bytes, pipe);
+      output.append(bytes, count);
+    }
+    status = pipe != nullptr ? pclose(pipe) : -1;
+    has_ended = true;
+  });
+  while (!has_ended) {
+    board->chip.run_for(1e-3);
+    line.carry(board->chip.console);
+  }
+  program.join();
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << output;
+  EXPECT_NE(output.find("3 points"), std::string::npos) << output;
+  EXPECT_EQ(output.find("simulat"), std::string::npos) << "it cannot know what is connected";
+  // What the board says of the points that it has measured.
+  const std::vector<double> fit = numbers(ask("CALC:IDEN?"));
+  ASSERT_EQ(fit.size(), 8U);
+  EXPECT_NEAR(fit[1], bench.bench().truth().device.natural_frequency_hz, 4.0 * fit[4]);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
+// A break is a device clear: half a message is forgotten.
+TEST_F(RealImage, ABreakClearsTheDevice) {
+  boot();
+  ASSERT_TRUE(answers(1.0));
+  board->chip.console.send("SENS:SWE:CYCL 1");
+  board->chip.run_for(0.01);
+  board->chip.console.spoil_next(LineFault::kFraming);
+  board->chip.console.send(std::string(1, '\0'));
+  board->chip.run_for(0.01);
+  EXPECT_EQ(ask("SENS:SWE:CYCL?"), "3");
+  EXPECT_EQ(error(), 0);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
 
 TEST_F(RealImage, NoiseAndFramingErrorsAreSurvived) {
   boot();

@@ -1,10 +1,10 @@
 #!/usr/bin/env -S python3 -B
 """Runs an image in QEMU as if it were a program of this PC, with the image's exit status.
 
-usage: qemu.py QEMU [OPTION...] run [--console null|tcp:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]
+usage: qemu.py QEMU [OPTION...] run [--console null|tcp:PORT|telnet:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]
 
 QEMU and its options choose the machine. The console of the board is standard input and output, or nothing, or a port of
-this PC on which the machine waits for its client. With --instruction-ns every instruction takes N ns of the machine's
+this PC on which the machine waits for its client; by telnet a client can send a break. With --instruction-ns every instruction takes N ns of the machine's
 time, whatever the speed of the PC; N is a power of two.
 """
 
@@ -38,6 +38,8 @@ def main() -> None:
 def console(where: str) -> str:
     if where.startswith("tcp:"):
         return f"tcp:127.0.0.1:{where.removeprefix('tcp:')},server=on,wait=on,nodelay=on"
+    if where.startswith("telnet:"):
+        return f"telnet:127.0.0.1:{where.removeprefix('telnet:')},server=on,wait=on,nodelay=on"
     return where
 
 

@@ -7,6 +7,7 @@ emax_declare_board(
   SIMULATED_BENCH
   SEMIHOSTING
   RUNNER ${EMAX_BOARD_COMMON}/qemu.py qemu-system-riscv32 -M virt -bios none run
+  TELNET_BREAK
   COUNTER src/minstret_counter.cpp
   INSTRUCTION_NS 1
   CORE_TITLE RV32IMAFDC

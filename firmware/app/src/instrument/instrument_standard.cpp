@@ -19,7 +19,7 @@ std::size_t length_of(const char* text) noexcept {
   return length;
 }
 
-/// The end of a header's line (SCPI-99, volume 2, 21.9).
+/// The end of a header's line (SCPI-99, volume 2, chapter 21).
 const char* line_end_of(const InstrumentRow& row) noexcept {
   if (!row.has_set()) {
     return kQueryOnly;

@@ -4,6 +4,12 @@
 #include <limits>
 
 namespace emax::board {
+namespace {
+
+// Where the break was. Control-C is a device clear itself, should two of them be there.
+constexpr char kMark = '\x03';
+
+}  // namespace
 
 std::size_t ConsoleRings::read(Span<char> bytes) noexcept {
   std::size_t count = 0;
@@ -32,6 +38,23 @@ void ConsoleRings::received(char byte) noexcept {
   if (!receive_.put(byte)) {
     lose();
   }
+}
+
+// Without room for the mark all that has come in is from before it.
+void ConsoleRings::broken() noexcept {
+  (void)receive_.put(kMark);
+  is_broken_.store(true, std::memory_order_release);
+}
+
+bool ConsoleRings::take_break() noexcept {
+  if (!is_broken_.load(std::memory_order_acquire)) {
+    return false;
+  }
+  is_broken_.store(false, std::memory_order_relaxed);
+  char byte = 0;
+  for (std::size_t i = 0; i < kReceiveRoom && byte != kMark && receive_.take(byte); ++i) {
+  }
+  return true;
 }
 
 void ConsoleRings::lose() noexcept {

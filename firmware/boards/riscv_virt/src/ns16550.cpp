@@ -18,6 +18,7 @@ constexpr std::uint8_t kTransmitInterrupt = 1U << 1;
 constexpr std::uint8_t kEightBits = 0x03;
 constexpr std::uint8_t kDivisorLatch = 0x80;
 constexpr std::uint8_t kDataReady = 1U << 0;
+constexpr std::uint8_t kBreak = 1U << 4;
 constexpr std::uint8_t kTransmitEmpty = 1U << 5;
 
 // Looks at the UART until a byte is given up: longer than a byte takes at 9600 baud.
@@ -35,8 +36,15 @@ void Ns16550::start(std::uint32_t clock_hz, std::uint32_t baud) noexcept {
 }
 
 void Ns16550::on_interrupt() noexcept {
-  if (has_received()) {
-    rings_.received(static_cast<char>(reg<std::uint8_t>(base_ + kData)));
+  // Reading the status clears the break.
+  const std::uint8_t status = reg<std::uint8_t>(base_ + kLineStatus);
+  if ((status & kDataReady) != 0) {
+    const auto byte = static_cast<char>(reg<std::uint8_t>(base_ + kData));
+    if ((status & kBreak) != 0) {
+      rings_.broken();
+    } else {
+      rings_.received(byte);
+    }
   }
   if (!can_take()) {
     return;
@@ -58,10 +66,6 @@ std::size_t Ns16550::do_write(Span<const char> bytes) noexcept {
 }
 
 bool Ns16550::sent() const noexcept { return rings_.sent() && can_take(); }
-
-bool Ns16550::has_received() const noexcept {
-  return (reg<std::uint8_t>(base_ + kLineStatus) & kDataReady) != 0;
-}
 
 bool Ns16550::can_take() const noexcept {
   return (reg<std::uint8_t>(base_ + kLineStatus) & kTransmitEmpty) != 0;

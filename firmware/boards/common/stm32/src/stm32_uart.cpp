@@ -77,7 +77,9 @@ void Stm32Uart::receive() noexcept {
     if ((status & kErrorsOfByte) == 0) {
       rings_.received(byte);
     } else if (byte != '\0') {
-      rings_.lose();  // A zero without a stop bit is the break of a client that opens the line.
+      rings_.lose();
+    } else {
+      rings_.broken();  // A zero without a stop bit.
     }
   }
 }

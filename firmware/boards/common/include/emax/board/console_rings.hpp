@@ -23,6 +23,7 @@ class ConsoleRings {
   std::size_t read(Span<char> bytes) noexcept;
   std::size_t write(Span<const char> bytes) noexcept;
   std::uint32_t take_lost_count() noexcept;
+  bool take_break() noexcept;
 
   /// @returns True if all that was written has been taken by the UART.
   bool sent() const noexcept { return transmit_.empty(); }
@@ -31,6 +32,8 @@ class ConsoleRings {
   void received(char byte) noexcept;
   /// For the interrupt: a byte has come in and cannot be used.
   void lose() noexcept;
+  /// For the interrupt: the line has a break; what has come in before it goes.
+  void broken() noexcept;
   /// For the interrupt: the next byte that goes out. @returns False if there is none.
   bool take_next(char& byte) noexcept { return transmit_.take(byte); }
 
@@ -40,6 +43,7 @@ class ConsoleRings {
   // Modulo 2^32; each is written by one side, and their difference is what is told.
   std::atomic<std::uint32_t> lost_count_ = 0;
   std::atomic<std::uint32_t> told_count_ = 0;
+  std::atomic<bool> is_broken_ = false;
 };
 
 }  // namespace emax::board

@@ -35,8 +35,8 @@ class Ns16550 final : public hal::ByteStream {
   std::size_t do_write(Span<const char> bytes) noexcept override;
   bool do_connected() const noexcept override { return true; }
   std::uint32_t do_take_lost_count() noexcept override { return rings_.take_lost_count(); }
+  bool do_take_break() noexcept override { return rings_.take_break(); }
 
-  bool has_received() const noexcept;
   bool can_take() const noexcept;
   void put_polled(char byte) noexcept;
 

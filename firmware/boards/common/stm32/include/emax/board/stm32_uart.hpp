@@ -18,7 +18,7 @@ enum class UartKind : std::uint8_t {
 
 /// 8 data bits, no parity, one stop bit, no flow control; a missing peer goes unnoticed. One
 /// interrupt for both directions. A byte that came with noise or without its stop bit is counted as
-/// lost, a break is dropped.
+/// lost; a break, which is a zero without its stop bit, is told.
 class Stm32Uart final : public hal::ByteStream {
  public:
   /// @param[in] base Of its registers.
@@ -41,6 +41,7 @@ class Stm32Uart final : public hal::ByteStream {
   std::size_t do_write(Span<const char> bytes) noexcept override;
   bool do_connected() const noexcept override { return true; }
   std::uint32_t do_take_lost_count() noexcept override { return rings_.take_lost_count(); }
+  bool do_take_break() noexcept override { return rings_.take_break(); }
 
   void receive() noexcept;
   void transmit() noexcept;
