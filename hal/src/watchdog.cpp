@@ -7,15 +7,13 @@ Status Watchdog::start() noexcept {
   if (running_) {
     return Status::kAlreadyRunning;
   }
-  if (period_us_ == 0 || do_start() != Status::kOk) {
-    return Status::kHardwareFault;
-  }
-  running_ = true;
-  return Status::kOk;
+  has_begun_ = true;
+  running_ = period_us_ != 0 && do_start() == Status::kOk;
+  return running_ ? Status::kOk : Status::kHardwareFault;
 }
 
 void Watchdog::kick() noexcept {
-  if (running_) {
+  if (has_begun_) {
     do_kick();
   }
 }

@@ -229,7 +229,7 @@ std::string pattern(board::LedState state) {
 TEST(StatusLed, LooksDifferentInEachState) {
   EXPECT_EQ(pattern(board::LedState::kReady), "#...................");
   EXPECT_EQ(pattern(board::LedState::kDriving), "#####.....#####.....");
-  EXPECT_EQ(pattern(board::LedState::kNoClock), "#.#.#.#.#.#.#.#.#.#.");
+  EXPECT_EQ(pattern(board::LedState::kCannotMeasure), "#.#.#.#.#.#.#.#.#.#.");
   EXPECT_EQ(pattern(board::LedState::kFault), "####################");
 }
 

@@ -126,6 +126,9 @@ bool Processor::on_block(std::uint32_t address, std::uint32_t bytes) {
   const std::uint32_t instructions = count(address, bytes);
   instructions_ += instructions;
   cycles_ += instructions;
+  if (watcher_) {
+    watcher_(address, instructions);
+  }
   events_.pass(cycle_ * instructions);
   if (bytes == 2 && is_endless(address)) {
     spin();

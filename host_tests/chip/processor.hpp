@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chip/engine.hpp"
@@ -56,6 +57,11 @@ class Processor final : private EngineClient {
   /// Lets time pass in which the processor does nothing, as while a bus keeps it waiting.
   void stall(Time delay);
 
+  /// Tells a test of each block of instructions, before it runs: address and number of them.
+  void watch_with(std::function<void(std::uint32_t, std::uint32_t)> watcher) {
+    watcher_ = std::move(watcher);
+  }
+
   std::uint32_t block() const { return block_; }
   std::uint64_t instructions() const { return instructions_; }
   std::uint64_t exceptions() const { return exceptions_; }
@@ -89,6 +95,7 @@ class Processor final : private EngineClient {
   Engine engine_;
   Nvic nvic_;
   SystemSpace system_;
+  std::function<void(std::uint32_t, std::uint32_t)> watcher_;
   std::vector<std::uint8_t> counts_;  ///< Instructions of the block at each even address of flash.
   Time cycle_ = 1;
   Time until_ = 0;

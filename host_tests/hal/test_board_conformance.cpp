@@ -236,6 +236,28 @@ TEST(Watchdog, PeriodOfZeroDoesNotStart) {
   EXPECT_FALSE(watchdog.running());
 }
 
+// A timer that cannot be relied on may run nevertheless, and nothing but kicks holds it.
+TEST(Watchdog, IsKickedAlsoAfterAStartThatFailed) {
+  class Unsure final : public hal::Watchdog {
+   public:
+    constexpr Unsure() noexcept : Watchdog(1000) {}
+    int kicks = 0;
+
+   private:
+    Status do_start() noexcept override { return Status::kHardwareFault; }
+    void do_kick() noexcept override { ++kicks; }
+    bool do_caused_reset() const noexcept override { return false; }
+  };
+  Unsure watchdog;
+  watchdog.kick();
+  EXPECT_FALSE(watchdog.failed());
+  EXPECT_EQ(watchdog.start(), Status::kHardwareFault);
+  watchdog.kick();
+  EXPECT_EQ(watchdog.kicks, 1);
+  EXPECT_TRUE(watchdog.failed());
+  EXPECT_FALSE(watchdog.running());
+}
+
 TEST(Watchdog, SaysThatItCausedTheReset) {
   EXPECT_TRUE(ManualWatchdog(1000, true).caused_reset());
   EXPECT_FALSE(ManualWatchdog(1000).caused_reset());

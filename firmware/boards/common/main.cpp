@@ -26,6 +26,9 @@ app::MemoryUse memory_use() noexcept {
   instrument.start();
   for (;;) {
     instrument.poll();
+    if (!instrument.is_busy() && !instrument.wants_to_write()) {
+      rest();
+    }
   }
 }
 

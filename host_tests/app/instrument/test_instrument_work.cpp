@@ -565,5 +565,18 @@ TEST(InstrumentWatchdog, IsKickedByEveryPoll) {
   EXPECT_FALSE(i.watchdog.bitten());
 }
 
+TEST(InstrumentWatchdog, ThatDoesNotStartIsToldAndNothingIsMeasured) {
+  const char* const words =
+      "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and on\"\n";
+  InstrumentBench i;
+  i.is_watchdog_dead = true;
+  i.switch_on();
+  EXPECT_EQ(i.errors(), words);
+  EXPECT_EQ(i.ask("INIT"), "");
+  EXPECT_FALSE(i.instrument->is_working());
+  EXPECT_EQ(i.errors(), words);
+  EXPECT_EQ(i.ask("*TST?"), "0");
+}
+
 }  // namespace
 }  // namespace emax

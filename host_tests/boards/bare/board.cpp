@@ -76,6 +76,8 @@ const app::Ports& ports() noexcept { return kPorts; }
 
 const app::Board& about() noexcept { return kAbout; }
 
+void rest() noexcept {}
+
 bool console_sent() noexcept { return true; }
 
 bool lead_drive_to_zero() noexcept { return true; }

@@ -21,8 +21,8 @@ void Instrument::start() noexcept {
   session_.power_on();
   reset();
   restore_identification();
-  if (ports_.watchdog != nullptr) {
-    (void)ports_.watchdog->start();  // Without one the board runs on; *TST? tells.
+  if (ports_.watchdog != nullptr && ports_.watchdog->start() == Status::kHardwareFault) {
+    session_.status().report(kNoWatchdog.code, kNoWatchdog.words);
   }
 }
 

@@ -93,6 +93,9 @@ ErrorWords Instrument::initiate_sweep() noexcept {
   if (is_working()) {
     return kRunning;
   }
+  if (ports_.watchdog != nullptr && ports_.watchdog->failed()) {
+    return kNoWatchdog;
+  }
   if (const Refusal refusal = sequencer_.measure(ports_.analog, sweep_settings_)) {
     return words_of(refusal, sequencer_);
   }

@@ -103,8 +103,8 @@ void start_interrupts() noexcept {
 }
 
 LedState led_state() noexcept {
-  if (!hardware.is_clock_exact) {
-    return LedState::kNoClock;
+  if (!hardware.is_clock_exact || hardware.watchdog.failed()) {
+    return LedState::kCannotMeasure;
   }
   return hardware.stream.running() ? LedState::kDriving : LedState::kReady;
 }
@@ -179,6 +179,15 @@ Status start_board() noexcept {
 const app::Ports& ports() noexcept { return kPorts; }
 
 const app::Board& about() noexcept { return kAbout; }
+
+void rest() noexcept {
+  // A byte that comes from here on ends the wait, although its interrupt is taken after it.
+  asm volatile("cpsid i" ::: "memory");
+  if (!hardware.console.has_received()) {
+    asm volatile("dsb\nwfi" ::: "memory");
+  }
+  asm volatile("cpsie i" ::: "memory");
+}
 
 bool console_sent() noexcept { return hardware.console.sent(); }
 

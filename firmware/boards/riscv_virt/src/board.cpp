@@ -74,6 +74,8 @@ const app::Ports& ports() noexcept { return kPorts; }
 
 const app::Board& about() noexcept { return kAbout; }
 
+void rest() noexcept {}
+
 bool console_sent() noexcept { return hardware.console.sent(); }
 
 // One at a time: what else is pending comes back at once.

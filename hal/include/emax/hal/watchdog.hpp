@@ -19,7 +19,8 @@ class Watchdog {
   /// @returns
   /// * kOk: `kick()` more often than every period from now on.
   /// * kAlreadyRunning: The running period goes on; this call does not count as a kick.
-  /// * kHardwareFault: The timer did not start, or the board states a period of zero.
+  /// * kHardwareFault: The timer did not start as it should, or the board states a period of zero.
+  ///   Should it run nevertheless, `kick()` holds it.
   Status start() noexcept;
 
   /// Starts the period anew. Does nothing before `start()`. Does not wait.
@@ -28,6 +29,8 @@ class Watchdog {
   /// @returns The least time from a kick to the reset. Constant for the life of the object.
   std::uint32_t period_us() const noexcept { return period_us_; }
   bool running() const noexcept { return running_; }
+  /// @returns True if it was started and cannot be relied on.
+  bool failed() const noexcept { return has_begun_ && !running_; }
 
   /// @returns True if the last reset of the board came from its watchdog.
   bool caused_reset() const noexcept { return do_caused_reset(); }
@@ -43,6 +46,7 @@ class Watchdog {
   virtual bool do_caused_reset() const noexcept = 0;
 
   const std::uint32_t period_us_;
+  bool has_begun_ = false;
   bool running_ = false;
 };
 

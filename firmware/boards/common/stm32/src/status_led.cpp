@@ -9,7 +9,7 @@ bool is_led_on(LedState state, std::uint32_t tick) noexcept {
       return tick % 20 == 0;
     case LedState::kDriving:
       return tick % 10 < 5;
-    case LedState::kNoClock:
+    case LedState::kCannotMeasure:
       return tick % 2 == 0;
     case LedState::kFault:
       break;

@@ -121,12 +121,20 @@ void Stm32Uart::write_polled(Span<const char> text) noexcept {
   for (const char next : text) {
     put_polled(next);
   }
+  // A reset that follows would take what is still in the FIFO.
+  wait_until(kSent);
 }
 
 void Stm32Uart::put_polled(char byte) noexcept {
+  wait_until(kRoomToSend);
+  if (can_take()) {
+    reg(base_ + kTransmitData) = static_cast<unsigned char>(byte);
+  }
+}
+
+void Stm32Uart::wait_until(std::uint32_t flag) const noexcept {
   for (std::uint32_t look = 0; look < kMaxLooks; ++look) {
-    if (can_take()) {
-      reg(base_ + kTransmitData) = static_cast<unsigned char>(byte);
+    if ((reg(base_ + kStatus) & flag) != 0) {
       return;
     }
   }

@@ -19,6 +19,11 @@ struct ErrorWords {
   explicit operator bool() const noexcept { return code != scpi::ErrorCode::kNoError; }
 };
 
+/// Without the watchdog nothing would lead the drive to zero should the program hang.
+inline constexpr ErrorWords kNoWatchdog = {
+    scpi::ErrorCode::kHardwareError,
+    "the watchdog does not start: no sweep; switch the board off and on"};
+
 /// @returns What stands in the way of this sequencer, or how its last job has ended.
 ErrorWords words_of(const Refusal& refusal, const Sequencer& sequencer) noexcept;
 

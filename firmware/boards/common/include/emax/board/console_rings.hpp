@@ -24,6 +24,7 @@ class ConsoleRings {
   std::size_t write(Span<const char> bytes) noexcept;
   std::uint32_t take_lost_count() noexcept;
   bool take_break() noexcept;
+  bool has_received() const noexcept { return !receive_.empty(); }
 
   /// @returns True if all that was written has been taken by the UART.
   bool sent() const noexcept { return transmit_.empty(); }

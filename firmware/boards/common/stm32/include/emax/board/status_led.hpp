@@ -6,10 +6,10 @@
 namespace emax::board {
 
 enum class LedState : std::uint8_t {
-  kReady,    ///< A short flash every two seconds.
-  kDriving,  ///< Even, once a second: the stream runs, and the shaker may move.
-  kNoClock,  ///< Fast, five times a second: no crystal, so nothing can be measured.
-  kFault,    ///< Steady: the program has stopped.
+  kReady,          ///< A short flash every two seconds.
+  kDriving,        ///< Even, once a second: the stream runs, and the shaker may move.
+  kCannotMeasure,  ///< Fast, five times a second: no crystal, or no watchdog.
+  kFault,          ///< Steady: the program has stopped.
 };
 
 /// @param[in] tick Tenths of a second since any moment.

@@ -30,6 +30,9 @@ class Stm32Uart final : public hal::ByteStream {
   /// For the interrupt.
   void on_interrupt() noexcept;
 
+  /// @returns True if a byte waits to be read.
+  bool has_received() const noexcept { return rings_.has_received(); }
+
   /// @returns True if nothing waits to go out.
   bool sent() const noexcept;
 
@@ -47,6 +50,7 @@ class Stm32Uart final : public hal::ByteStream {
   void transmit() noexcept;
   bool can_take() const noexcept;
   void put_polled(char byte) noexcept;
+  void wait_until(std::uint32_t flag) const noexcept;
 
   const std::uintptr_t base_;
   const UartKind kind_;
