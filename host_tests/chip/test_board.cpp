@@ -165,8 +165,9 @@ TEST_F(RealImage, AWatchdogThatDoesNotTakeItsSettingsIsToldAndNothingIsDriven) {
   EXPECT_EQ(error(), -240);
   ask("SENS:SWE:FREQ 200,500,1000;*OPC?");
   EXPECT_EQ(ask("INIT;*OPC?", 1.0), "1");
-  EXPECT_EQ(ask("SYST:ERR?"),
-            "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and on\"");
+  EXPECT_EQ(
+      ask("SYST:ERR?"),
+      "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and on\"");
   EXPECT_EQ(led_changes(2.0), 20U);
   board->chip.run_for(30.0);
   EXPECT_EQ(board->chip.resets(), 1U);

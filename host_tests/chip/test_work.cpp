@@ -132,6 +132,132 @@ TEST_F(Loopback, TakesTheLatencyThatIsStated) {
   EXPECT_EQ(record.stated_latency, 513U);
 }
 
+/// Counts the instructions of a sweep without those that wait for a block.
+class WorkCounter {
+ public:
+  WorkCounter(Stm32g474& chip, std::uint32_t wait, std::uint32_t exchange)
+      : chip_(chip), wait_(wait), exchange_(exchange) {}
+
+  void on_block(std::uint32_t address, std::uint32_t instructions) {
+    const Engine& engine = chip_.processor().engine();
+    if (address == exchange_) {
+      if (exchanges_++ > 0) {
+        total_ += block_;
+        largest_ = std::max(largest_, block_);
+      }
+      block_ = 0;
+    } else if (address == wait_) {
+      back_ = engine.get(UC_ARM_REG_LR) & ~1U;
+      sp_ = engine.get(UC_ARM_REG_SP);
+    } else if (address == back_ && engine.get(UC_ARM_REG_SP) == sp_) {
+      back_ = 0;
+    }
+    block_ += back_ == 0 ? instructions : 0;
+  }
+  double per_frame() const { return static_cast<double>(total_) / (64.0 * (exchanges_ - 1)); }
+  double per_frame_at_most() const { return static_cast<double>(largest_) / 64.0; }
+
+ private:
+  Stm32g474& chip_;
+  const std::uint32_t wait_, exchange_;
+  std::uint32_t back_ = 0, sp_ = 0;  // Of the wait under way.
+  std::uint64_t block_ = 0, total_ = 0, largest_ = 0;
+  unsigned exchanges_ = 0;
+};
+
+/// 1 234 567
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) {
+    at -= 3;
+    text.insert(at, " ");
+  }
+  return text;
+}
+
+std::string time_of(double time_us) {
+  std::ostringstream text;
+  text.precision(3);
+  time_us < 1000.0 ? text << time_us << " µs" : text << time_us / 1000.0 << " ms";
+  return text.str();
+}
+
+/// Rows of a table in a Markdown file, between its two marks: the first cell, and the second one as
+/// a number.
+std::vector<std::pair<std::string, double>> table_rows(const std::string& name) {
+  std::ifstream file(EMAX_CHIP_TABLES);
+  std::vector<std::pair<std::string, double>> rows;
+  bool inside = false;
+  for (std::string line; std::getline(file, line);) {
+    inside = inside ? line != "<!-- end of table " + name + " -->"
+                    : line == "<!-- table " + name + " -->";
+    const std::size_t middle = line.find(" | "), end = line.find(" | ", middle + 3);
+    if (inside && end != std::string::npos && line.find("---") == std::string::npos) {
+      std::string number = line.substr(middle + 3, end - middle - 3);
+      number.erase(std::remove(number.begin(), number.end(), ' '), number.end());
+      rows.emplace_back(line.substr(2, middle - 2), std::strtod(number.c_str(), nullptr));
+    }
+  }
+  return rows;
+}
+
+class Counts : public Loopback {
+ protected:
+  /// From the first character to the wait behind the answer.
+  std::uint64_t of(const std::string& command) {
+    ask("");
+    board->chip.run_for(0.01);
+    const std::uint64_t before = board->chip.processor().instructions();
+    ask(command + (command.find('?') == std::string::npos ? ";*OPC?" : ""), 20.0);
+    board->chip.run_for(0.001);
+    return board->chip.processor().instructions() - before;
+  }
+  void add(const std::string& what, double count) { rows_.emplace_back(what, std::round(count)); }
+  void count_sweep() {
+    WorkCounter counter(board->chip, function("G474Stream14wait_for_block"),
+                        function("G474Stream11do_exchange"));
+    board->chip.processor().watch_with([&](std::uint32_t address, std::uint32_t instructions) {
+      counter.on_block(address, instructions);
+    });
+    ask("INIT;*OPC?", 10.0);
+    board->chip.processor().watch_with({});
+    add("sweep, one frame with its drivers, in the mean", counter.per_frame());
+    add("the same in the dearest block of 64", counter.per_frame_at_most());
+  }
+  void compare() {
+    const auto recorded = table_rows("board counts");
+    std::string fresh;
+    bool same = recorded.size() == rows_.size() + 1;  // And the head.
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto& [what, count] = rows_[i];
+      fresh += "| " + what + " | " + grouped(static_cast<std::uint64_t>(count)) + " | " +
+               time_of(count / 170.0) + " |\n";
+      same = same && recorded[i + 1].first == what &&
+             std::fabs(recorded[i + 1].second - count) <= 0.1 * count;
+    }
+    EXPECT_TRUE(same) << "the rows of \"board counts\" in firmware/README.md should be:\n" << fresh;
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>> rows_;
+};
+
+// Within 10 %, as the other counts of that page: another release of the compiler may differ.
+TEST_F(Counts, AreThoseOfTheTable) {
+  boot();
+  ask("SENS:REF:SENS 1.02;GAIN 1;:SENS:DEV:GAIN 1;:SOUR:LEV 1;:SENS:SWE:FREQ 500,1000,2000;*OPC?");
+  count_sweep();
+  EXPECT_EQ(error(), 0);
+  for (const char* const command :
+       {"*IDN?", "SYST:ERR?", "SENS:SWE:FREQ?", "FETC:FRES?", "*TST?", "*SAV 1"}) {
+    add("`" + std::string(command) + "`", static_cast<double>(of(command)));
+  }
+  const std::uint64_t before = board->chip.processor().instructions();
+  board->chip.run_for(1.0);
+  add("a second at rest", static_cast<double>(board->chip.processor().instructions() - before));
+  compare();
+}
+
 /// The answers of the program on the PC, one for each line.
 std::vector<std::string> answers_of_pc(const std::vector<std::string>& lines) {
   std::string script;
@@ -155,18 +281,17 @@ std::vector<std::string> answers_of_pc(const std::vector<std::string>& lines) {
 }
 
 TEST_F(RealImage, AnswersHaveTheDigitsOfThePc) {
-  const std::vector<std::string> lines = {
-      "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;*OPC?",
-      "CALC:MOD?",
-      "CALC:AERR?",
-      "CALC:SETT?",
-      "CALC:IMP? 0.00001,0.0001,0.001",
-      "CALC:ENER:EVAL? 0.00068,0.00149",
-      "CALC:ENER?",
-      "CALC:ENER:ITER 3;STEP 2e-5;FPA?",
-      "CALC:MCAR:TRI 1000;:CALC:MCAR?",
-      "DIAG:RAND? 5",
-      "SYST:ERR?"};
+  const std::vector<std::string> lines = {"CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;*OPC?",
+                                          "CALC:MOD?",
+                                          "CALC:AERR?",
+                                          "CALC:SETT?",
+                                          "CALC:IMP? 0.00001,0.0001,0.001",
+                                          "CALC:ENER:EVAL? 0.00068,0.00149",
+                                          "CALC:ENER?",
+                                          "CALC:ENER:ITER 3;STEP 2e-5;FPA?",
+                                          "CALC:MCAR:TRI 1000;:CALC:MCAR?",
+                                          "DIAG:RAND? 5",
+                                          "SYST:ERR?"};
   const std::vector<std::string> expected = answers_of_pc(lines);
   ASSERT_EQ(expected.size(), lines.size());
   boot();
@@ -191,7 +316,8 @@ TEST_F(RealImage, AnIdleProgramSleepsAndIsAwakeAtOnce) {
   // Both characters, and the answer's first one, take 87 us each.
   const double asked_s = board->chip.now_s();
   board->chip.console.send("*IDN?\n");
-  ASSERT_TRUE(board->chip.run_until([&] { return !board->chip.console.sent().empty(); }, 1.0, 1e-5));
+  ASSERT_TRUE(
+      board->chip.run_until([&] { return !board->chip.console.sent().empty(); }, 1.0, 1e-5));
   EXPECT_LT(board->chip.now_s() - asked_s, 8 * 87e-6 + 1e-4);
   EXPECT_EQ(board->chip.findings.text(), "");
 }
