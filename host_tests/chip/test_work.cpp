@@ -258,6 +258,52 @@ TEST_F(Counts, AreThoseOfTheTable) {
   compare();
 }
 
+/// A dialogue as the board's page prints it: "> " stands before what is typed, and its answer follows,
+/// in one line or in several that belong together; "(" begins what is done by hand.
+class Dialogue : public Loopback {
+ protected:
+  struct Turn {
+    std::string typed;
+    std::string answer;
+  };
+  static std::vector<Turn> turns() {
+    std::ifstream file(EMAX_CHIP_BOARD_README);
+    std::vector<Turn> turns;
+    bool inside = false;
+    for (std::string line; std::getline(file, line);) {
+      inside = inside ? line != "<!-- end of dialogue -->" : line == "<!-- dialogue -->";
+      if (!inside || line.empty() || line[0] == '<' || line[0] == '`') {
+        continue;
+      }
+      if (line.rfind("> ", 0) == 0) {
+        turns.push_back({line.substr(2), ""});
+      } else if (line[0] == '(') {
+        turns.push_back({line, ""});
+      } else if (!turns.empty()) {
+        turns.back().answer += line;
+      }
+    }
+    return turns;
+  }
+};
+
+TEST_F(Dialogue, OfTheReadmeIsWhatTheBoardAnswers) {
+  boot();
+  std::size_t answers = 0;
+  for (const Turn& turn : turns()) {
+    if (turn.typed[0] == '(') {
+      ASSERT_NE(turn.typed.find("unplug"), std::string::npos) << turn.typed;
+      boot();
+      continue;
+    }
+    const bool is_query = turn.typed.find('?') != std::string::npos;
+    EXPECT_EQ(ask(turn.typed, is_query ? 60.0 : 0.1), turn.answer) << turn.typed;
+    answers += is_query ? 1 : 0;
+  }
+  EXPECT_GE(answers, 8U);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
 /// The answers of the program on the PC, one for each line.
 std::vector<std::string> answers_of_pc(const std::vector<std::string>& lines) {
   std::string script;

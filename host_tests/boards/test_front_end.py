@@ -1,0 +1,152 @@
+"""Computes what the front end of a board's README does, from its bill of materials, and compares with what is said there.
+
+usage: test_front_end.py README.MD SWEEP_BUDGET.CPP
+
+The drive is held between two frames, so the pin also puts out the images of a frequency f, at n rate +- f. They come
+back as f when the inputs are sampled, and where device and reference answer them differently, the ratio is wrong by as
+much as they are left over. All of it in closed form: hold, filters, shaker, device, and the mean of the conversions.
+"""
+
+import cmath
+import math
+import re
+import sys
+from typing import Callable
+
+RATE_HZ = 50e3
+CONVERSIONS = 32
+CONVERSION_S = 25 / 42.5e6
+SUPPLY_V = 3.3
+HIGHEST_HZ = 6000.0  # Of the default sweep.
+IMAGES = range(-8, 9)
+UNITS = {"Ω": 1.0, "kΩ": 1e3, "pF": 1e-12, "nF": 1e-9}
+
+Response = Callable[[float], complex]
+
+
+def parts_of(readme: str) -> dict[str, float]:
+    """R1 and so on, in ohms and farads."""
+    parts = {}
+    for names, value, unit in re.findall(r"^\| ((?:[RC]\d+,? ?)+)\| ([\d.]+) (kΩ|Ω|pF|nF)", readme, re.MULTILINE):
+        for name in re.findall(r"[RC]\d+", names):
+            parts[name] = float(value) * UNITS[unit]
+    return parts
+
+
+def follower_low_pass(first_ohm: float, second_ohm: float, back_f: float, ground_f: float) -> Response:
+    """Second order, around a follower: two resistors in series, a capacitor back to their middle, one to ground."""
+
+    def response(frequency_hz: float) -> complex:
+        s = 2j * math.pi * frequency_hz
+        return 1 / (1 + s * (first_ohm + second_ohm) * ground_f + s * s * first_ohm * second_ohm * back_f * ground_f)
+
+    return response
+
+
+def resonance(frequency_hz: float, natural_hz: float, damping: float) -> complex:
+    x = frequency_hz / natural_hz
+    return 1 / (1 - x * x + 2j * damping * x)
+
+
+def device(frequency_hz: float) -> complex:
+    return resonance(frequency_hz, 4073.0, 0.3182)
+
+
+def armature(frequency_hz: float) -> complex:
+    return resonance(frequency_hz, 14e3, 0.05)
+
+
+def stiff(_: float) -> complex:
+    return 1.0
+
+
+def hold(frequency_hz: float) -> complex:
+    x = math.pi * frequency_hz / RATE_HZ
+    return cmath.exp(-1j * x) * (math.sin(x) / x)
+
+
+def mean_of_conversions(frequency_hz: float) -> complex:
+    turn = cmath.exp(-2j * math.pi * frequency_hz * CONVERSION_S)
+    return sum(turn**k for k in range(CONVERSIONS)) / CONVERSIONS
+
+
+def butterworth4(corner_hz: float) -> Response:
+    return lambda f: resonance(f, corner_hz, math.cos(math.pi / 8)) * resonance(f, corner_hz, math.sin(math.pi / 8))
+
+
+def error_by_images(frequency_hz: float, drive: Response, shaker: Response, inputs: Response) -> complex:
+    """Of the ratio of device and reference, relative."""
+    reference = both = 0j
+    for n in IMAGES:
+        f = frequency_hz + n * RATE_HZ
+        part = hold(f) * drive(f) * shaker(f) * inputs(f) * mean_of_conversions(f)
+        reference += part
+        both += part * device(f)
+    return both / reference / device(frequency_hz) - 1
+
+
+def worst(drive: Response, shaker: Response, inputs: Response) -> tuple[float, float]:
+    """Up to the highest frequency: percent and degrees."""
+    errors = [error_by_images(f, drive, shaker, inputs) for f in range(100, int(HIGHEST_HZ) + 1, 100)]
+    return 100 * max(abs(e.real) for e in errors), math.degrees(max(abs(e.imag) for e in errors))
+
+
+def corner_hz(response: Response, low_hz: float = 1e3, high_hz: float = 1e5) -> float:
+    for _ in range(60):
+        middle_hz = math.sqrt(low_hz * high_hz)
+        low_hz, high_hz = (middle_hz, high_hz) if abs(response(middle_hz)) > math.sqrt(0.5) else (low_hz, middle_hz)
+    return low_hz
+
+
+def main() -> int:
+    with open(sys.argv[1], encoding="utf-8") as file:
+        readme = file.read()
+    with open(sys.argv[2], encoding="utf-8") as file:
+        budget = dict(re.findall(r"constexpr double (kImages|kImageSkew) = ([\d.e-]+);", file.read()))
+    p = parts_of(readme)
+    divider_ohm = 1 / (1 / p["R1"] + 1 / p["R2"] + 1 / p["R3"])
+    inputs = follower_low_pass(divider_ohm, p["R4"], p["C1"], p["C2"])
+    first = follower_low_pass(p["R8"], p["R15"], p["C6"], p["C4"])
+    second = follower_low_pass(p["R16"], p["R17"], p["C8"], p["C7"])
+
+    def drive(f: float) -> complex:
+        return first(f) * second(f)
+
+    allowed_percent = 100 * float(budget["kImages"]) * (HIGHEST_HZ / RATE_HZ) ** 2
+    allowed_deg = math.degrees(2 * math.pi * HIGHEST_HZ * float(budget["kImageSkew"]) / RATE_HZ)
+    left_percent, left_deg = worst(drive, armature, inputs)
+    stiff_percent, stiff_deg = worst(drive, stiff, inputs)
+    wide_percent, wide_deg = worst(butterworth4(25e3), armature, stiff)
+    print(f"images: {left_percent:.2g} %, {left_deg:.2g} deg; stiff {stiff_percent:.2g} %, {stiff_deg:.2g} deg")
+    print(f"budget: {allowed_percent:.2g} %, {allowed_deg:.2g} deg; filter of 25 kHz {wide_percent:.2g} %, {wide_deg:.2g} deg")
+
+    # A filter for twice the rate is what the budget does not allow for.
+    assert left_percent <= allowed_percent and left_deg <= allowed_deg
+    assert stiff_percent <= 2 * allowed_percent and stiff_deg <= allowed_deg
+    assert wide_deg > 10 * allowed_deg
+    # The difference amplifier has the same gain for both of its inputs, so that half of the supply is zero volts.
+    assert p["R9"] == p["R10"] and p["R11"] == p["R12"] and p["R6"] == p["R7"] and p["R13"] == p["R14"]
+
+    in_db = -20 * math.log10(abs(inputs(10e3) * mean_of_conversions(10e3)))
+    middle_v = SUPPLY_V * divider_ohm / p["R2"]
+    sentences = [
+        f"{SUPPLY_V / 2 * p['R1'] / divider_ohm:.2f} V are full scale",
+        f"±10 V into {middle_v:.2f} ± {10 * divider_ohm / p['R1']:.1f} V",
+        f"low pass of second order at {corner_hz(inputs) / 1e3:.0f} kHz",
+        f"take {in_db:.1f} dB off both",
+        f"are ±{SUPPLY_V / 2 * p['R12'] / p['R10']:.2f} V behind U2 (R12/R10 = {p['R12'] / p['R10']:.2f})",
+        f"fourth order at {corner_hz(drive) / 1e3:.1f} kHz",
+        f"{left_percent:.4f} % and {left_deg:.5f}°",
+        f"{stiff_percent:.3f} % and {stiff_deg:.4f}°",
+        f"{allowed_percent:.3f} % and {allowed_deg:.4f}°",
+        f"{wide_deg:.3f}°",
+    ]
+    words = " ".join(readme.split())
+    missing = [sentence for sentence in sentences if sentence not in words]
+    for sentence in missing:
+        print(f"{sys.argv[1]}: should say '{sentence}'")
+    return 1 if missing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
