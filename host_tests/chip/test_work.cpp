@@ -258,8 +258,8 @@ TEST_F(Counts, AreThoseOfTheTable) {
   compare();
 }
 
-/// A dialogue as the board's page prints it: "> " stands before what is typed, and its answer follows,
-/// in one line or in several that belong together; "(" begins what is done by hand.
+/// A dialogue as the board's page prints it: "> " stands before what is typed, and its answer
+/// follows, in one line or in several that belong together; "(" begins what is done by hand.
 class Dialogue : public Loopback {
  protected:
   struct Turn {

@@ -567,7 +567,8 @@ TEST(InstrumentWatchdog, IsKickedByEveryPoll) {
 
 TEST(InstrumentWatchdog, ThatDoesNotStartIsToldAndNothingIsMeasured) {
   const char* const words =
-      "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and on\"\n";
+      "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and "
+      "on\"\n";
   InstrumentBench i;
   i.is_watchdog_dead = true;
   i.switch_on();

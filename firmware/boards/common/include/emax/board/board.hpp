@@ -19,8 +19,8 @@ const app::Ports& ports() noexcept;
 /// `start_board()`; `memory_use` is left to the image.
 const app::Board& about() noexcept;
 
-/// For a program that has nothing to do: may wait for an interrupt, for a tenth of a second at most.
-/// Does not wait once a byte has come in.
+/// For a program that has nothing to do: may wait for an interrupt, for a tenth of a second at
+/// most. Does not wait once a byte has come in.
 void rest() noexcept;
 
 /// @returns True if all that was written to the console has gone out.
