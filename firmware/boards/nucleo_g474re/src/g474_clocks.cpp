@@ -99,12 +99,11 @@ bool switch_to_pll(std::uint32_t source) noexcept {
   reg(kConfiguration) = (reg(kConfiguration) & ~kAhbDivider) | kAhbByTwo;
   switch_to(kSwitchToPll);
   const bool is_switched = is_switched_to(kSwitchToPll);
-  if (is_switched) {
-    // The timebase runs ten times too fast by now: this is 2 us at least.
-    pause_us(20);
-  } else {
+  if (!is_switched) {
     switch_to(kSwitchToInternal);
   }
+  // The timebase may run ten times too fast by now: this is 2 us at least.
+  pause_us(20);
   reg(kConfiguration) &= ~kAhbDivider;
   return is_switched;
 }
@@ -124,6 +123,8 @@ Clocks start_clocks() noexcept {
   reg(kControl) |= kCrystalOn;
   const bool has_crystal = is_set(kControl, kCrystalReady, kMostCrystal_us);
   if (!has_crystal || !prepare_speed() || !switch_to_pll(kPllOfCrystal)) {
+    // The PLL first, which may run from it.
+    reg(kControl) &= ~kPllOn;
     reg(kControl) &= ~kCrystalOn;
     return from_internal();
   }

@@ -225,7 +225,7 @@ std::uint32_t G474Stream::do_ramp_to_zero(hal::Word step_per_frame) noexcept {
 void G474Stream::do_stop() noexcept {
   stop_output();
   reg(kTimerControl1) = 0;
-  inputs_.stop();
+  (void)inputs_.stop();
   reg(kInputChannel) = 0;
   reg(kOutputChannel) = 0;
   kDac.rest();

@@ -23,8 +23,8 @@ class G474AdcPair {
   /// Lets them wait for the first trigger. Their DMA channel runs.
   void start() noexcept;
 
-  /// Also after a start that failed halfway.
-  void stop() noexcept;
+  /// Also after a start that failed halfway. @returns False if one of them does not stop.
+  bool stop() noexcept;
 
   /// @returns True if a result was not fetched in time.
   bool has_overrun() const noexcept;
