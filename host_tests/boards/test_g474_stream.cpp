@@ -37,7 +37,7 @@ class Bench {
   Bench(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false)
       : chip_(std::make_unique<FakeConverters>(fault, at_frame, is_dac_ahead)),
         stream_(std::make_unique<G474Stream>()) {
-    stream_->park();
+    stream_->park(170'000'000);
     stream_->set_clock_exact(true);
     chip_->set_output_interrupt([stream = stream_.get()] { stream->on_output_interrupt(); });
   }

@@ -147,9 +147,6 @@ class FlagThatNeverComes : public RealImage, public testing::WithParamInterface<
 // Whatever does not come, the console answers in the end, and the drive rests.
 TEST_P(FlagThatNeverComes, IsWaitedForWithinBounds) {
   const HeldFlag& flag = GetParam();
-  if (std::string(flag.block) == "RCC" || std::string(flag.block) == "FLASH") {
-    provoked.insert("dac_hfsel");  // At 16 MHz its interface is set as for 170, which is slower.
-  }
   board->chip.hold(flag.block, flag.register_name, flag.bits, flag.value);
   board->chip.power_on();
   ASSERT_TRUE(answers(3.0));
@@ -392,6 +389,7 @@ TEST_F(Hang, IsToldAndEndsWithAReset) {
                        "( [a-z]+=0x[0-9a-f]{8}){7}\n")))
       << told;
   EXPECT_TRUE(answers(1.0));
+  EXPECT_EQ(error(), -310);
   EXPECT_EQ(board->analog.greatest_excursion_v(), 0.0);
 }
 
@@ -407,6 +405,7 @@ TEST_F(Hang, OfASweepBringsTheDriveToZeroBeforeTheReset) {
   ASSERT_NE(off, record.end());
   EXPECT_LE(std::fabs((off - 1)->pin_v - kMiddle_v), kCode_v);
   EXPECT_TRUE(answers(1.0));
+  EXPECT_EQ(error(), -310);
 }
 
 TEST_F(Hang, WithoutInterruptsIsEndedByTheOtherWatchdog) {
@@ -416,6 +415,7 @@ TEST_F(Hang, WithoutInterruptsIsEndedByTheOtherWatchdog) {
   EXPECT_TRUE(is_reset(30.0));
   EXPECT_EQ(board->chip.rcc.bus_read(0x94, 4) & kWatchdogReset, kWatchdogReset);
   EXPECT_TRUE(answers(1.0));
+  EXPECT_EQ(error(), -310);
   EXPECT_LE(driving_v(), kCode_v);
 }
 

@@ -44,8 +44,8 @@ class InstrumentBench {
   /// Power off and on; the store keeps what it holds.
   void switch_on() {
     static app::InPlace<app::Instrument> memory;
-    const app::Ports ports = {bench, console, clock, is_watchdog_dead ? &dead_watchdog : &watchdog,
-                              &store};
+    const app::Ports ports = {bench, console, clock,
+                              other_watchdog != nullptr ? other_watchdog : &watchdog, &store};
     const app::Board board = {"test", "4711", &sweep, &simulated, nullptr};
     instrument = &memory.make(ports, board);
     instrument->start();
@@ -128,8 +128,7 @@ class InstrumentBench {
   MemoryByteStream console;
   ManualClock clock;
   ManualWatchdog watchdog{100'000};
-  ManualWatchdog dead_watchdog{0};
-  bool is_watchdog_dead = false;  // From the next `switch_on()`.
+  hal::Watchdog* other_watchdog = nullptr;  // Instead of it, from the next `switch_on()`.
   MemoryStore store;
   app::SweepSettings sweep = quick_sweep();
   app::SimulatedBench simulated;

@@ -16,6 +16,7 @@ namespace emax {
 namespace {
 
 using test::InstrumentBench;
+using test::ManualWatchdog;
 
 constexpr char kPaperModel[] = "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004";
 
@@ -570,13 +571,25 @@ TEST(InstrumentWatchdog, ThatDoesNotStartIsToldAndNothingIsMeasured) {
       "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and "
       "on\"\n";
   InstrumentBench i;
-  i.is_watchdog_dead = true;
+  ManualWatchdog dead(0);
+  i.other_watchdog = &dead;
   i.switch_on();
   EXPECT_EQ(i.errors(), words);
   EXPECT_EQ(i.ask("INIT"), "");
   EXPECT_FALSE(i.instrument->is_working());
   EXPECT_EQ(i.errors(), words);
   EXPECT_EQ(i.ask("*TST?"), "0");
+}
+
+TEST(InstrumentWatchdog, ThatHasResetTheBoardIsTold) {
+  InstrumentBench i;
+  ManualWatchdog after_reset(100'000, true);
+  i.other_watchdog = &after_reset;
+  i.switch_on();
+  EXPECT_EQ(
+      i.errors(),
+      "-310,\"System error;the watchdog has reset the board: its program hung, or had stopped "
+      "in a fault\"\n");
 }
 
 }  // namespace

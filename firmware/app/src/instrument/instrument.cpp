@@ -21,7 +21,13 @@ void Instrument::start() noexcept {
   session_.power_on();
   reset();
   restore_identification();
-  if (ports_.watchdog != nullptr && ports_.watchdog->start() == Status::kHardwareFault) {
+  if (ports_.watchdog == nullptr) {
+    return;
+  }
+  if (ports_.watchdog->caused_reset()) {
+    session_.status().report(kWatchdogReset.code, kWatchdogReset.words);
+  }
+  if (ports_.watchdog->start() == Status::kHardwareFault) {
     session_.status().report(kNoWatchdog.code, kNoWatchdog.words);
   }
 }

@@ -165,7 +165,7 @@ extern "C" {
 
 Status start_board() noexcept {
   const Clocks clocks = start_clocks();
-  hardware.stream.park();
+  hardware.stream.park(clocks.hz);
   start_pins();
   reg(kDebugFreeze) |= kTimersAndWatchdog;
   serial = read_unique_id(kUniqueId);

@@ -48,8 +48,11 @@ constexpr std::uint32_t kTriggerAtUpdate = 2U << 4;
 static_assert(EMAX_BOARD_CLOCK_HZ % 1'000'000 == 0);
 constexpr std::uint32_t kFrameCycles = EMAX_BOARD_CLOCK_HZ / 1'000'000 * kFrame_us;
 
-// TIM6 (7) triggers; above 160 MHz the DAC needs the slower of its ways to the bus (HFSEL 2).
-constexpr Stm32Dac kDac({kDac1, kTim6, 7, 2U << 14});
+// TIM6 (7) triggers.
+constexpr Stm32Dac kDac({kDac1, kTim6, 7});
+// Above 160 MHz the DAC needs the slower of its ways to the bus (HFSEL 2); 80 to 160 are not used.
+constexpr std::uint32_t kSlowAccess = 2U << 14;
+constexpr std::uint32_t kFastBus_hz = 160'000'000;
 
 constexpr std::uint32_t kMostWait_us = 2 * kBlockFrames * kFrame_us;
 // Until the DAC has asked for its first value, if it does so before the first trigger.
@@ -70,7 +73,9 @@ void set_up(std::uintptr_t channel, std::uintptr_t peripheral, std::uint32_t mem
 
 }  // namespace
 
-void G474Stream::park() noexcept { kDac.park(); }
+void G474Stream::park(std::uint32_t clock_hz) noexcept {
+  kDac.park(clock_hz > kFastBus_hz ? kSlowAccess : 0);
+}
 
 void G474Stream::lose_clock() noexcept {
   is_clock_exact_.store(false, std::memory_order_relaxed);

@@ -34,11 +34,11 @@ constexpr std::uint32_t kLooksWithoutTrigger = 400;
 
 std::uintptr_t Stm32Dac::data_register() const noexcept { return settings_.base + kLeftJustified; }
 
-void Stm32Dac::park() const noexcept {
+void Stm32Dac::park(std::uint32_t mode) const noexcept {
   // Its mode is taken while it is off only, and its value must be there before it is on: with
   // triggers from the start the pin would go to 0 V, which is the drive's full scale.
   reg(settings_.base + kControl) = 0;
-  reg(settings_.base + kMode) = settings_.mode;
+  reg(settings_.base + kMode) = mode;
   reg(settings_.base + kLeftJustified) = kMidScale;
   reg(settings_.base + kControl) = kEnable;
   pause_us(kWakeUp_us);

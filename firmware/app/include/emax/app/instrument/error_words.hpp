@@ -24,6 +24,11 @@ inline constexpr ErrorWords kNoWatchdog = {
     scpi::ErrorCode::kHardwareError,
     "the watchdog does not start: no sweep; switch the board off and on"};
 
+/// After power on; a reset by the watchdog itself says nothing.
+inline constexpr ErrorWords kWatchdogReset = {
+    scpi::ErrorCode::kSystemError,
+    "the watchdog has reset the board: its program hung, or had stopped in a fault"};
+
 /// @returns What stands in the way of this sequencer, or how its last job has ended.
 ErrorWords words_of(const Refusal& refusal, const Sequencer& sequencer) noexcept;
 

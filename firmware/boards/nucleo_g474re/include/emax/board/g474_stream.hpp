@@ -30,7 +30,9 @@ class G474Stream final : public hal::AnalogStream {
   constexpr G474Stream() noexcept : AnalogStream(kG474Format) {}
 
   /// Zero volts of drive on the pin, before anything else. The clocks of the peripherals are on.
-  void park() noexcept;
+  ///
+  /// @param[in] clock_hz Of the bus: 170 MHz, or 80 MHz at most.
+  void park(std::uint32_t clock_hz) noexcept;
 
   /// @param[in] is_exact Whether the clock is the crystal's; without it, `start()` fails.
   void set_clock_exact(bool is_exact) noexcept { is_clock_exact_ = is_exact; }

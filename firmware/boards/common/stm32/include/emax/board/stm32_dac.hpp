@@ -12,7 +12,6 @@ struct DacSettings {
   std::uintptr_t base;    ///< Of its registers.
   std::uintptr_t timer;   ///< Of the basic timer that triggers it.
   std::uint32_t trigger;  ///< That timer's number in TSEL1.
-  std::uint32_t mode;     ///< Of its clock, in MCR beside the channel's mode.
 };
 
 /// The pin is driven through the DAC's own amplifier. Zero volts of drive are half of the supply:
@@ -27,7 +26,9 @@ class Stm32Dac {
 
   /// Puts zero volts of drive onto the pin, which the reset has left to the resistors outside. Once
   /// its clock is on.
-  void park() const noexcept;
+  ///
+  /// @param[in] mode In MCR beside the channel's mode, which is 0: what its bus's clock asks for.
+  void park(std::uint32_t mode) const noexcept;
 
   /// From now on the timer's triggers let values out, and ask DMA for the next ones.
   void follow_timer() const noexcept;
