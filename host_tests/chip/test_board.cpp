@@ -36,6 +36,7 @@ TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
   EXPECT_EQ(name.find("emax,nucleo_g474re,00112233445566778899AABB,"), 0U) << name;
   EXPECT_EQ(ask("*TST?"), "0");
   EXPECT_EQ(error(), 0);
+  EXPECT_EQ(led_changes(4.0), 4U);  // A flash every two seconds.
   EXPECT_EQ(board->chip.clocks.hclk_hz, 170'000'000U);
   EXPECT_EQ(board->chip.findings.text(), "");
 }
@@ -74,6 +75,7 @@ TEST_F(RealImage, ASweepRecoversTheTruthWithinItsUncertainty) {
 struct SweepFault {
   const char* name;
   void (*strike)(Stm32g474&);
+  const char* told;  ///< What the error says.
 };
 
 void lose_a_block(Stm32g474& chip) { chip.requests.lose(kAdc1Request, 64); }
@@ -91,16 +93,18 @@ TEST_P(FaultOfTheSweep, EndsWithAnErrorAndTheDriveAtZero) {
   board->chip.run_for(0.05);
   EXPECT_LE(driving_v(), kCode_v);
   EXPECT_LE(frames(struck, last_driven()), kFramesToZero);
-  EXPECT_NE(error(), 0);
+  const std::string error = ask("SYST:ERR?");
+  EXPECT_EQ(error.find(std::string("-240,\"Hardware error;") + GetParam().told), 0U) << error;
   EXPECT_EQ(ask("*IDN?").substr(0, 5), "emax,");
 }
 
-INSTANTIATE_TEST_SUITE_P(Chip, FaultOfTheSweep,
-                         testing::Values(SweepFault{"lost_block", lose_a_block},
-                                         SweepFault{"dead_converters", stop_the_converters},
-                                         SweepFault{"response_dma", fail_the_response},
-                                         SweepFault{"drive_dma", fail_the_drive}),
-                         [](const auto& fault) { return std::string(fault.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Chip, FaultOfTheSweep,
+    testing::Values(SweepFault{"lost_block", lose_a_block, "lost block"},
+                    SweepFault{"dead_converters", stop_the_converters, "late block"},
+                    SweepFault{"response_dma", fail_the_response, "converter fault"},
+                    SweepFault{"drive_dma", fail_the_drive, "converter fault"}),
+    [](const auto& fault) { return std::string(fault.param.name); });
 
 TEST_F(RealImage, AnAbortBringsTheDriveToZero) {
   boot();
@@ -117,7 +121,8 @@ TEST_F(RealImage, WithoutACrystalItTalksAndRefusesToMeasure) {
   board->chip.power_on();
   ASSERT_TRUE(answers(1.0));
   ask("INIT;*OPC?", 0.5);
-  EXPECT_NE(error(), 0);
+  EXPECT_EQ(error(), -240);
+  EXPECT_EQ(led_changes(2.0), 20U);
   EXPECT_EQ(board->analog.greatest_excursion_v(), 0.0);
   EXPECT_EQ(board->chip.findings.text(), "");
 }
@@ -133,6 +138,7 @@ TEST_F(RealImage, ACrystalThatStopsEndsTheSweepWithTheDriveAtZero) {
   EXPECT_LE(driving_v(), kCode_v);
   // The stream's clock is ten times as slow now.
   EXPECT_LE(seconds(last_driven() - struck), 0.2);
+  EXPECT_EQ(error(), -240);
 }
 
 struct HeldFlag {

@@ -39,7 +39,10 @@ constexpr std::uintptr_t kResetCause = kRcc + 0x94;
 constexpr std::uint32_t kForgetCause = 1U << 23;
 constexpr std::uint32_t kByWatchdog = 1U << 29;
 
-// Timers and the watchdog stand still while a debugger holds the processor.
+// A debugger reaches the processor while it sleeps; timers and the watchdog stand still while it is
+// held.
+constexpr std::uintptr_t kDebugControl = kDebug + 0x04;
+constexpr std::uint32_t kDebugInSleep = 1U << 0;
 constexpr std::uintptr_t kDebugFreeze = kDebug + 0x08;
 constexpr std::uint32_t kTimersAndWatchdog = 1U << 0 | 1U << 4 | 1U << 5 | 1U << 12;
 
@@ -167,6 +170,7 @@ Status start_board() noexcept {
   const Clocks clocks = start_clocks();
   hardware.stream.park(clocks.hz);
   start_pins();
+  reg(kDebugControl) |= kDebugInSleep;
   reg(kDebugFreeze) |= kTimersAndWatchdog;
   serial = read_unique_id(kUniqueId);
   hardware.watchdog.prepare(clocks.hz, take_watchdog_cause());
