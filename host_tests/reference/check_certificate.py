@@ -56,13 +56,20 @@ def require(condition: bool, reason: str) -> None:
 class Response:
     """Poles p and residues r of k(t) = sum of r e^(p t): intervals, and balls of them."""
 
-    def __init__(self, system: reference.System) -> None:
+    def __init__(self, poles: list, residues: list, starts_at_zero: bool) -> None:
+        self.poles, self.residues, self.starts_at_zero = poles, residues, starts_at_zero
+        self.p = Ball.stack([Ball.of_interval(pole) for pole in poles])
+        self.r = Ball.stack([Ball.of_interval(r) for r in residues])
+
+    @staticmethod
+    def parts_of(system: reference.System) -> "list[tuple[float, Response]]":
+        """The responses whose energies, each with its sign, add up to the criterion."""
         sensor, order = system.sensor, system.order
         gain = iv.mpf(system.filter.gain)
         w0 = 2 * iv.pi * iv.mpf(sensor.f0)
         beta = iv.mpf(sensor.beta)
         own = iv.mpc(-beta * w0, w0 * iv.sqrt(1 - beta * beta))
-        sensor_poles = [own, self.conjugate(own)]
+        sensor_poles = [own, Response.conjugate(own)]
         rate = 2 * iv.pi * iv.mpf(system.cutoff)
         filter_poles = []
         for i in range(1, order + 1):
@@ -85,17 +92,22 @@ class Response:
         sensor_part, filter_part = iv.mpf(sensor.S) * w0**2, rate**order
         sensor_residues = [residue(sensor_poles, i, sensor_part) for i in range(2)]
         filter_residues = [residue(filter_poles, i, filter_part) for i in range(order)]
+        starts_at_zero = order >= 2 and system.delay == 0.0
+        if system.criterion == "difference":
+            filter_residues = [gain * r for r in filter_residues]
+            return [(1.0, Response(sensor_poles, sensor_residues, True)),
+                    (-1.0, Response(filter_poles, filter_residues, starts_at_zero))]
         if system.criterion == "band":
+            # The delayed filter is h(t - delay) continued to earlier t by its modes.
+            delay = iv.mpf(system.delay)
             sensor_residues = [r * value(filter_poles, filter_part, p)
                                for r, p in zip(sensor_residues, sensor_poles)]
-            filter_residues = [r * (value(sensor_poles, sensor_part, p) - gain)
+            filter_residues = [r * (value(sensor_poles, sensor_part, p) - gain * iv.exp(-p * delay))
                                for r, p in zip(filter_residues, filter_poles)]
         else:
             filter_residues = [-gain * r for r in filter_residues]
-        self.poles = sensor_poles + filter_poles
-        self.residues = sensor_residues + filter_residues
-        self.p = Ball.stack([Ball.of_interval(pole) for pole in self.poles])
-        self.r = Ball.stack([Ball.of_interval(r) for r in self.residues])
+        return [(1.0, Response(sensor_poles + filter_poles, sensor_residues + filter_residues,
+                               starts_at_zero))]
 
     @staticmethod
     def conjugate(z: object) -> object:
@@ -113,13 +125,10 @@ class Response:
             result.append(float(iv.sqrt(abs(total)).b) * RAISE)
         return result
 
-    def starts(self, count: int) -> list[float]:
-        """At least |k^(n)(0)|."""
-        result = []
-        for n in range(count):
-            total = sum(((r * p**n).real for r, p in zip(self.residues, self.poles)), iv.mpf(0))
-            result.append(float(abs(total).b) * RAISE)
-        return result
+    def start(self) -> float:
+        """At least |k(0)|."""
+        total = sum((r.real for r in self.residues), iv.mpf(0))
+        return float(abs(total).b) * RAISE
 
 
 # ----------------------------------------------------------------------------------- constants
@@ -129,33 +138,67 @@ class SlopeBound:
     """m_1(t) = integral over s of |f(t, s)|, f = d phi/dt, from above on [0, T].
 
     For s >= t, f = -integral of k(w) k'(w + s - t) up to T - s; for s <= t it is -k(T - t) k(T - s)
-    + integral of k(w) k'(w + t - s) up to T - t. f has a continuous slope, as k(0) = 0. Second
-    derivatives of f by t or s, integrated over s, are at most `curvature`: the norms of k and k'''
-    for the integral, and products of the largest |k^(n)| with integrals of |k^(2 - n)| for what the
-    moving end adds. So linear interpolation of |f| in s and in t is off by at most curvature/8
+    + integral of k(w) k'(w + t - s) up to T - t. Second derivatives of either by t or s, integrated
+    over s, are at most `curvature`: the norms of k and k''' for the integral, and products of the
+    largest |k^(n)| with integrals of |k^(2 - n)| for what the moving end adds. Where k(0) = 0, f has
+    a continuous slope; so linear interpolation of |f| in s and in t is off by at most curvature/8
     times the square of the step, each.
+
+    Where k(0) is not 0, f jumps at s = t, by k(0)^2. For t at a part c of the way between two points
+    of the mesh, that is within one step of s. There |f| is above its interpolation by no more than
+    the jump and two steps of `slope`, a bound of |df/dt| on both sides, times 1 - c before t and c
+    after it: over s, by at most a step times half the jump and a step of slope. The energy
+    difference is a sum of two f.
     """
 
-    def __init__(self, response: Response, time: float) -> None:
-        fastest = float(np.max(response.p.size()))
+    def __init__(self, parts: "list[tuple[float, Response]]", time: float) -> None:
+        fastest = max(float(np.max(response.p.size())) for _, response in parts)
         self.count = max(400, math.ceil(time * fastest * MESH_RESOLUTION))
         require(self.count <= MAX_MESH, "T is too long for the mesh of this check")
-        norms, starts = response.norms(4), response.starts(3)
-        root = math.sqrt(time) * RAISE
-        largest = [starts[n] + root * norms[n + 1] for n in range(3)]
-        curvature = time * norms[0] * norms[3]
-        curvature += sum(largest[2 - n] * root * norms[n] for n in range(3))
         self.step = Fraction(time) / self.count
         step = float(self.step) * RAISE
-        self.remainder = 0.25 * curvature * step * step * (1.0 + 1e-12)
-        self.integrals = self._integrals(response, step)
+        self.remainder = sum(self._remainder(response, time, step) for _, response in parts)
+        self.integrals = self._integrals(parts, step)
 
-    def _integrals(self, response: Response, step: float) -> Array:
+    @staticmethod
+    def _remainder(response: Response, time: float, step: float) -> float:
+        norms, start = response.norms(4), response.start()
+        root = math.sqrt(time) * RAISE
+        # |k^(n)|^2 = -2 integral of k^(n) k^(n+1) from there on.
+        largest = [math.sqrt(2.0 * norms[n] * norms[n + 1]) * RAISE for n in range(3)]
+        curvature = time * norms[0] * norms[3]
+        curvature += sum(largest[2 - n] * root * norms[n] for n in range(3))
+        result = 0.25 * curvature * step * step
+        if not response.starts_at_zero:
+            slope = 2.0 * largest[0] * largest[1] + norms[0] * norms[2]
+            result += step * (0.5 * start**2 + step * slope)
+        return result * (1.0 + 1e-12)
+
+    def _integrals(self, parts: "list[tuple[float, Response]]", step: float) -> Array:
         """By the trapezoidal rule, at each point of the mesh."""
+        n = self.count
+        tables = [(sign, *self._tables(response)) for sign, response in parts]
+        off = sum(table[-1] for table in tables) * (1.0 + 16.0 * U)
+        totals = np.zeros(n + 1)
+        for t in range(n + 1):
+            left = n - t  # T - t in steps.
+            after, before = np.zeros(left + 1), np.zeros(t + 1)
+            for sign, em, lm, km, _ in tables:
+                # s = t + m: T - s = left - m; and s = t - m: T - s = left + m.
+                after += sign * np.einsum("pm,pm->m", em[:, : left + 1], lm[:, left::-1]).real
+                before += sign * (np.einsum("p,pm->m", lm[:, left], em[:, : t + 1]).real
+                                  - km[left] * km[left : n + 1])
+            after, before = np.abs(after), np.abs(before)
+            total = np.sum(after) - 0.5 * (after[0] + after[-1])
+            total += np.sum(before) - 0.5 * (before[0] + before[-1])
+            totals[t] = total * (1.0 + 8.0 * n * U) + (n + 2) * off
+        return totals * step * RAISE**2
+
+    def _tables(self, response: Response) -> tuple[Array, Array, Array, float]:
+        """e^(p m step); r p U_p(m step), by mode and m; k(m step); what a term of f is off by."""
         n, p = self.count, response.p
         step_ball = Ball(float(self.step), float(self.step) * U)
-        powers = (p * step_ball).exp()
-        e = self._powers(powers, n + 1)  # e^(p m step), by mode and m.
+        e = self._powers((p * step_ball).exp(), n + 1)
         # U_p(tau) = sum over q of r_q (e^((p + q) tau) - 1)/(p + q).
         held_middle = np.zeros((len(p.middle), n + 1), dtype=complex)
         held_radius = np.zeros(held_middle.shape)
@@ -164,34 +207,20 @@ class SlopeBound:
             weight = (response.r * (p[i] + p).inverse())[:, None]
             held = (weight * (e * e[i : i + 1] - one)).sum(0)
             held_middle[i], held_radius[i] = held.middle, held.radius
-        held = Ball(held_middle, held_radius)
         k = (response.r[:, None] * e).sum(0)
-        c = (response.r * p)[:, None]
-        later = c * held  # By mode and M, s = T - M step.
-        # What a sum over modes of products may be off by, the same everywhere.
+        later = (response.r * p)[:, None] * Ball(held_middle, held_radius)
+
         def largest(values: Array) -> Array:
             return np.max(values, axis=1)
 
+        # What a sum over modes of products may be off by, the same everywhere.
         off = float(np.sum(largest(np.abs(later.middle)) * largest(e.radius)
                            + largest(later.radius) * largest(e.size())))
         off += 8.0 * (len(p.middle) + 4) * U * float(
             np.sum(largest(later.size()) * largest(e.size())))
         size = float(np.max(k.size()))
         off += 2.0 * size * float(np.max(k.radius)) + 8.0 * U * size * size
-        off *= RAISE**2
-        totals = np.zeros(n + 1)
-        em, lm, km = e.middle, later.middle, k.middle.real
-        for t in range(n + 1):
-            left = n - t  # T - t in steps.
-            # s = t + m: T - s = left - m.
-            after = np.abs(np.einsum("pm,pm->m", em[:, : left + 1], lm[:, left::-1]).real)
-            # s = t - m: T - s = left + m.
-            before = np.abs(np.einsum("p,pm->m", lm[:, left], em[:, : t + 1]).real
-                            - km[left] * km[left : n + 1])
-            total = np.sum(after) - 0.5 * (after[0] + after[-1])
-            total += np.sum(before) - 0.5 * (before[0] + before[-1])
-            totals[t] = total * (1.0 + 8.0 * n * U) + (n + 2) * off
-        return totals * step * RAISE**2
+        return e.middle, later.middle, k.middle.real, off * RAISE**2
 
     @staticmethod
     def _powers(base: Ball, count: int) -> Ball:
@@ -212,8 +241,18 @@ class SlopeBound:
         return (float(np.max(self.integrals[low : high + 1])) + self.remainder) * RAISE
 
 
-def cell_matrix(response: Response, edges: Array) -> tuple[Array, Array]:
-    """Phi on the cells and the radii of its elements, by closed forms.
+def cell_matrix(parts: "list[tuple[float, Response]]", edges: Array) -> tuple[Array, Array]:
+    """Phi on the cells and the radii of its elements."""
+    matrix = radius = np.zeros((len(edges) - 1, len(edges) - 1))
+    for sign, response in parts:
+        part, off = part_matrix(response, edges)
+        matrix = matrix + sign * part
+        radius = (radius + off + 2.0 * U * np.abs(matrix)) * RAISE
+    return matrix, radius
+
+
+def part_matrix(response: Response, edges: Array) -> tuple[Array, Array]:
+    """Phi of one response and the radii of its elements, by closed forms.
 
     For cells i < j, Phi_ij = sum over p of early_p(i) e^(p d) late_p(j), d from the end of i to the
     start of j: early is the integral of e^(p (end - t)) over i, late that of r_p e^(p (s - start))
@@ -277,7 +316,7 @@ class Certificate:
                 reference.Accelerometer(float(model["S"]), float(model["f0"]),
                                         float(model["beta"])),
                 int(model["order"]), float(model["cutoff"]), float(model["gain"]),
-                model.get("criterion", "ise"))
+                model.get("criterion", "ise"), float(model.get("delay", 0.0)))
             self.time, self.limit = float(limits["T"]), float(limits["a"])
             self.energy = float(data["energy"]["E"])
             self.switches = [float(t) for t in data["energy"]["switch_times"]]
@@ -293,8 +332,11 @@ class Certificate:
         self.check_form()
 
     def check_form(self) -> None:
-        require(self.system.criterion in ("ise", "band"), "a criterion that is not covered")
-        require(self.system.order >= 2, "a filter of order 1 or less")
+        system = self.system
+        require(system.criterion in ("ise", "difference", "band"), "a criterion that is not covered")
+        require(1 <= system.order <= 15, "a filter that is not of order 1 to 15")
+        most = 1.0 / (2.0 * math.pi * system.cutoff) if system.criterion == "band" else 0.0
+        require(0.0 <= system.delay <= most, "a delay that is not covered")
         require(self.cells >= 2 and self.edges[0] == 0.0 and self.edges[-1] == self.time
                 and bool(np.all(np.diff(self.edges) > 0.0)), "edges do not go from 0 to T")
         require(self.costs.shape == (self.cells,) and self.y.shape == (self.cells,),
@@ -312,9 +354,15 @@ class Certificate:
 
 
 def check_costs(certificate: Certificate, slope: SlopeBound) -> None:
+    """At least m_1 h^2/2, and h^3 (max |s Kf|/pi)^2 for the energy difference: |s Kf| <= G 2 pi fc."""
+    system = certificate.system
+    rest = Fraction(0)
+    if system.criterion == "difference":
+        rest = (2 * Fraction(system.filter.gain) * Fraction(system.cutoff)) ** 2
     for cell, (start, stop) in enumerate(zip(certificate.edges[:-1], certificate.edges[1:])):
         width = Fraction(float(stop)) - Fraction(float(start))
-        least = Fraction(slope.over(float(start), float(stop))) * width * width / 2
+        m1 = Fraction(slope.over(float(start), float(stop)))
+        least = (m1 / 2 + rest * width) * width * width
         require(Fraction(float(certificate.costs[cell])) >= least,
                 f"the cost of cell {cell} is too low")
 
@@ -358,9 +406,9 @@ def check(data: dict) -> tuple[Certificate, float]:
     require(proven <= Fraction(certificate.bound),
             f"it says {certificate.bound:.12g} V^2 s, but proves {float(proven):.12g} V^2 s only")
     try:
-        response = Response(certificate.system)
-        check_costs(certificate, SlopeBound(response, certificate.time))
-        matrix, radius = cell_matrix(response, certificate.edges)
+        parts = Response.parts_of(certificate.system)
+        check_costs(certificate, SlopeBound(parts, certificate.time))
+        matrix, radius = cell_matrix(parts, certificate.edges)
     except (Undecided, ZeroDivisionError) as error:
         raise Rejected(f"not decided: {error}") from error
     check_slack(certificate, matrix, radius)
@@ -369,6 +417,27 @@ def check(data: dict) -> tuple[Certificate, float]:
     require(abs(reached - certificate.energy) <= 1e-9 * reached,
             "its signal does not have the energy that it says")
     return certificate, certificate.bound
+
+
+def delay_error(system: reference.System) -> float:
+    """At least the integral of |h(-s)| from 0 to the delay, h the filter with gain 1, continued.
+
+    By the Taylor series at 0, whose terms below order - 1 are 0: h^(n)(0) = sum of r p^n, and what
+    comes after the 40 terms that are summed is at most the sum of |r| for each, as |p| delay <= 1.
+    """
+    if system.delay == 0.0:
+        return 0.0
+    unit = reference.System(system.sensor, system.order, system.cutoff, 1.0, "difference")
+    response = Response.parts_of(unit)[1][1]
+    delay, total, factor = iv.mpf(system.delay), iv.mpf(0), iv.mpf(1)
+    last = system.order + 40
+    for n in range(last):
+        factor = factor * delay / (n + 1)  # delay^(n + 1)/(n + 1)!
+        if n >= system.order - 1:
+            terms = (r * p**n for r, p in zip(response.residues, response.poles))
+            total += abs(sum((term.real for term in terms), iv.mpf(0))) * factor
+    sizes = sum((abs(r) for r in response.residues), iv.mpf(0))
+    return float((total + 2 * sizes * delay / iv.mpf(math.factorial(last))).b) * RAISE
 
 
 def main() -> int:
@@ -386,6 +455,12 @@ def main() -> int:
     print(f"proven: E <= {bound:.9g} V^2 s for every signal within +-{certificate.limit:g} m/s^2 "
           f"on [0, {certificate.time:g} s]; {certificate.energy:.9g} V^2 s is reached, "
           f"{gap:.3f} % below")
+    system = certificate.system
+    if system.delay > 0.0:
+        off = delay_error(system) * system.filter.gain * certificate.limit
+        whole = (math.sqrt(bound) + off * math.sqrt(certificate.time)) ** 2
+        print(f"that is for the delayed filter continued by its modes; "
+              f"for the delay of {system.delay:.9g} s itself: E <= {whole * (1.0 + 1e-12):.9g} V^2 s")
     return 0
 
 

@@ -5,6 +5,7 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax {
 namespace {
@@ -70,7 +71,8 @@ void fill_costs(const KernelBounds& bounds, double margin, CertificateGrid& grid
     const double from_s = grid.edges_s[cell];
     const double to_s = grid.edges_s[cell + 1];
     const double width_s = to_s - from_s;
-    grid.costs[cell] = 0.5 * margin * bounds.bound(from_s, to_s) * width_s * width_s;
+    const double rest = width_s * (bounds.filter_slope() / kPi) * (bounds.filter_slope() / kPi);
+    grid.costs[cell] = margin * (0.5 * bounds.bound(from_s, to_s) + rest) * width_s * width_s;
   }
 }
 

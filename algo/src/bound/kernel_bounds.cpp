@@ -3,6 +3,7 @@
 
 #include "emax/base/complex_exp.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 #include "emax/energy/known_energy.hpp"
 #include "emax/energy/switching_signal.hpp"
 
@@ -54,6 +55,22 @@ double tail_energy(const ModalModel& model, const Complex* c, double length_s) n
   return 0.5 * sum;
 }
 
+/// The square of the response to a unit step, or the difference of the two squares.
+double step_power(const ModalModel& model, double time_s) noexcept {
+  if (model.is_square()) {
+    const double output = model.step_response(time_s);
+    return output * output;
+  }
+  const Span<const Mode> modes = model.modes();
+  double sensor = 0.0;
+  double filter = 0.0;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    (i == 0 ? sensor : filter) +=
+        time_s * real_of_product(modes[i].residue, phi1(time_s * modes[i].pole));
+  }
+  return sensor * sensor - filter * filter;
+}
+
 }  // namespace
 
 std::size_t mesh_intervals(const ModalModel& model, double duration_s) noexcept {
@@ -95,9 +112,9 @@ double pulse_energy(const ModalModel& model, double left_s, double width_s) noex
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     const double middle_s = (2.0 * static_cast<double>(piece) + 1.0) * half_s;
     for (std::size_t n = 0; n < 4; ++n) {
-      const double before = model.step_response(middle_s - half_s * kNodes[n]);
-      const double after = model.step_response(middle_s + half_s * kNodes[n]);
-      during += half_s * kWeights[n] * (before * before + after * after);
+      const double before = step_power(model, middle_s - half_s * kNodes[n]);
+      const double after = step_power(model, middle_s + half_s * kNodes[n]);
+      during += half_s * kWeights[n] * (before + after);
     }
   }
   const Span<const Mode> modes = model.modes();
@@ -110,12 +127,9 @@ double pulse_energy(const ModalModel& model, double left_s, double width_s) noex
 
 Status KernelBounds::start(const ModalModel& model, double duration_s,
                            Span<double> numbers) noexcept {
-  const bool is_exact = model.delay_s() == 0.0 && model.moved_by() == 0.0 && !model.is_nothing();
-  if (!(duration_s > 0.0) || !model.is_square() || model.feedthrough() != 0.0 || !is_exact) {
+  const bool is_exact = model.moved_by() == 0.0 && !model.is_nothing();
+  if (!(duration_s > 0.0) || model.feedthrough() != 0.0 || !is_exact) {
     return Status::kInvalidArgument;
-  }
-  if (model.filter().relative_degree < 2) {
-    return Status::kInvalidOrder;
   }
   const std::size_t intervals = mesh_intervals(model, duration_s);
   if (intervals > kMaxMesh) {
@@ -131,8 +145,7 @@ Status KernelBounds::start(const ModalModel& model, double duration_s,
   stride_ = intervals > kFineIntervals ? 2 : 1;
   next_row_ = 0;
   fill_tables(numbers);
-  fill_norms();
-  return has_digits() ? Status::kOk : Status::kLostDigits;
+  return fill_remainder() && has_digits() ? Status::kOk : Status::kLostDigits;
 }
 
 void KernelBounds::fill_tables(Span<double> numbers) noexcept {
@@ -150,63 +163,120 @@ void KernelBounds::fill_tables(Span<double> numbers) noexcept {
     held_im_[i] = take();
   }
   impulse_ = take();
+  taken_off_ = take();
   integrals_ = take();
+  const bool is_square = model_->is_square();
   for (std::size_t point = 0; point < points; ++point) {
     const double time_s = static_cast<double>(point) * step_s_;
     Complex held[kMaxModes];
     held_responses(*model_, duration_s_ - time_s > 0.0 ? duration_s_ - time_s : 0.0, held);
     double impulse = 0.0;
+    double taken_off = 0.0;
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const Complex exponential = exp(time_s * modes[i].pole);
       exponential_re_[i][point] = exponential.re;
       exponential_im_[i][point] = exponential.im;
       held_re_[i][point] = held[i].re;
       held_im_[i][point] = held[i].im;
-      impulse += real_of_product(modes[i].residue, exponential);
+      const bool is_sensor = i == 0;
+      (is_square || is_sensor ? impulse : taken_off) +=
+          real_of_product(modes[i].residue, exponential);
     }
     impulse_[point] = impulse;
+    taken_off_[point] = taken_off;
   }
 }
 
-/// Whether the norms of k are more than what their sums round off, and the constant signal's energy
-/// much more: Phi is a difference of the same sums.
+/// Whether the energy of the constant signal is much more than what its sums round off: Phi is a
+/// difference of the same sums. The energy difference may be small by itself; then it is that of
+/// the sensor's settled output that counts.
 bool KernelBounds::has_digits() const noexcept {
-  for (const double norm : norms_) {
-    if (!(norm > 0.0) || !is_finite(norm)) {
-      return false;
+  const double constant = energy(*model_, Span<const double>(), duration_s_);
+  const double gain = model_->device().sensitivity;
+  const double size = model_->is_square() ? constant : duration_s_ * gain * gain;
+  return energy_rounding(*model_, duration_s_, 0, constant) <= kLeastDigits * size;
+}
+
+/// Of an impulse response and its derivatives.
+struct KernelBounds::Norms {
+  static constexpr std::size_t kDerivatives = 4;
+  double norms[kDerivatives] = {};   // Roots of the integrals of their squares.
+  double starts[kDerivatives] = {};  // Their sizes at 0.
+  bool starts_at_zero = false;
+
+  bool are_known() const noexcept {
+    for (const double norm : norms) {
+      if (!(norm > 0.0) || !is_finite(norm)) {
+        return false;
+      }
     }
+    return true;
   }
-  const double found = energy(*model_, Span<const double>(), duration_s_);
-  return energy_rounding(*model_, duration_s_, 0, found) <= kLeastDigits * found;
+};
+
+/// Of the modes from `first` to before `last`, which are one output.
+KernelBounds::Norms KernelBounds::norms_of(std::size_t first, std::size_t last) const noexcept {
+  const Span<const Mode> modes = model_->modes();
+  Norms all;
+  all.starts_at_zero = model_->starts_at_zero();
+  for (std::size_t n = 0; n < Norms::kDerivatives; ++n) {
+    double start = 0.0;
+    double energy = 0.0;
+    for (std::size_t i = first; i < last; ++i) {
+      const Complex c = modes[i].residue * power_of(modes[i].pole, n);
+      start += c.re;
+      for (std::size_t j = first; j < last; ++j) {
+        const Complex d = modes[j].residue * power_of(modes[j].pole, n);
+        energy += 0.5 * (real_of_product(c * d, model_->gramian(i, j)) +
+                         real_of_product(c * conj(d), model_->conjugate_gramian(i, j)));
+      }
+    }
+    all.starts[n] = abs(start) * kRounding;
+    // The Gramian of a square is negative, that of what is taken off positive.
+    all.norms[n] = sqrt(abs(energy)) * kRounding;
+  }
+  return all;
 }
 
 // The third derivatives that the remainder asks for are integrals of products k^(i) k^(j) with i +
 // j = 3, bounded by norms, and what the moving end of the integral adds, with the integral of
 // |k^(n)| over [0, T] at most sqrt(T) times its norm.
-void KernelBounds::fill_norms() noexcept {
-  const Span<const Mode> modes = model_->modes();
-  for (std::size_t n = 0; n < kDerivatives; ++n) {
-    double start = 0.0;
-    double energy = 0.0;
-    for (std::size_t i = 0; i < modes.size(); ++i) {
-      const Complex c = modes[i].residue * power_of(modes[i].pole, n);
-      start += c.re;
-      for (std::size_t j = 0; j < modes.size(); ++j) {
-        const Complex d = modes[j].residue * power_of(modes[j].pole, n);
-        energy -= 0.5 * (real_of_product(c * d, model_->gramian(i, j)) +
-                         real_of_product(c * conj(d), model_->conjugate_gramian(i, j)));
-      }
-    }
-    starts_[n] = abs(start) * kRounding;
-    norms_[n] = sqrt(energy) * kRounding;
-  }
+double KernelBounds::remainder_of(const Norms& norms) const noexcept {
   const double root = sqrt(duration_s_);
   const double t_step_s = static_cast<double>(stride_) * step_s_;
-  const double smooth = maximum(norms_[3] * norms_[0], norms_[1] * norms_[2]);
-  // On both sides of t.
-  const double moving_end = 2.0 * root * (starts_[1] * norms_[1] + starts_[2] * norms_[0]);
-  remainder_ =
-      0.125 * (t_step_s * t_step_s + step_s_ * step_s_) * (duration_s_ * smooth + moving_end);
+  const double squares = 0.125 * (t_step_s * t_step_s + step_s_ * step_s_);
+  const double* const size = norms.norms;
+  if (norms.starts_at_zero) {
+    const double smooth = maximum(size[3] * size[0], size[1] * size[2]);
+    // On both sides of t.
+    const double moving_end = 2.0 * root * (norms.starts[1] * size[1] + norms.starts[2] * size[0]);
+    return squares * (duration_s_ * smooth + moving_end);
+  }
+  double largest[3];
+  double moving_end = 0.0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    // The square at t is -2 times the integral of k^(n) k^(n+1) from t on.
+    largest[n] = sqrt(2.0 * size[n] * size[n + 1]);
+    moving_end += root * largest[n] * size[2 - n];
+  }
+  const double slope = 2.0 * largest[0] * largest[1] + size[0] * size[2];
+  const double jump = norms.starts[0] * norms.starts[0];
+  return squares * (duration_s_ * size[0] * size[3] + moving_end) +
+         t_step_s * (0.5 * jump + t_step_s * slope);
+}
+
+/// @returns False if rounding hides a norm.
+bool KernelBounds::fill_remainder() noexcept {
+  const std::size_t count = model_->modes().size();
+  if (model_->is_square()) {
+    const Norms norms = norms_of(0, count);
+    remainder_ = remainder_of(norms);
+    return norms.are_known();
+  }
+  const Norms sensor = norms_of(0, 1);
+  const Norms filter = norms_of(1, count);
+  remainder_ = remainder_of(sensor) + remainder_of(filter);
+  return sensor.are_known() && filter.are_known();
 }
 
 void KernelBounds::step() noexcept {
@@ -268,12 +338,14 @@ void KernelBounds::add_from_row_on(std::size_t row, RowSums& sums) const noexcep
 void KernelBounds::add_up_to_row(std::size_t row, RowSums& sums) const noexcept {
   const Span<const Mode> modes = model_->modes();
   const double* impulse = impulse_.data();
+  const double* taken_off = taken_off_.data();
   const std::size_t end = intervals_ - row;  // T - t.
   for (std::size_t first = 0; first <= row; first += RowSums::kChunk) {
     const std::size_t left = row + 1 - first;
     const std::size_t count = left < RowSums::kChunk ? left : RowSums::kChunk;
     for (std::size_t i = 0; i < count; ++i) {
-      sums.terms[i] = -impulse[end] * impulse[end + first + i];
+      sums.terms[i] =
+          taken_off[end] * taken_off[end + first + i] - impulse[end] * impulse[end + first + i];
     }
     for (std::size_t m = 0; m < modes.size(); ++m) {
       const Complex c =
@@ -286,6 +358,11 @@ void KernelBounds::add_up_to_row(std::size_t row, RowSums& sums) const noexcept 
     }
     sums.add(count, first == 0, first + count > row);
   }
+}
+
+double KernelBounds::filter_slope() const noexcept {
+  const ReferenceFilter& filter = model_->filter();
+  return model_->is_square() ? 0.0 : filter.gain * kTwoPi * filter.band_hz * kRounding;
 }
 
 double KernelBounds::bound(double from_s, double to_s) const noexcept {

@@ -30,8 +30,17 @@ void write_about(const ProvenEnergy& proven, TextWriter& out) noexcept {
   out.text(", \"order\": ").integer(static_cast<std::uint64_t>(filter.relative_degree));
   out.text(", \"cutoff\": ").exact(filter.band_hz);
   out.text(", \"gain\": ").exact(filter.gain);
-  const bool is_in_band = proven.model->criterion() == Criterion::kInBandError;
-  out.text(is_in_band ? ", \"criterion\": \"band\"},\n" : "},\n");
+  switch (proven.model->criterion()) {
+    case Criterion::kInBandError:
+      out.text(", \"criterion\": \"band\", \"delay\": ").exact(proven.model->delay_s());
+      break;
+    case Criterion::kEnergyDifference:
+      out.text(", \"criterion\": \"difference\"");
+      break;
+    case Criterion::kIntegralSquareError:
+      break;
+  }
+  out.text("},\n");
   out.text(" \"signal\": {\"T\": ").exact(proven.signal->duration_s());
   out.text(", \"a\": ").exact(proven.limit_mps2).text("},\n");
   out.text(" \"energy\": {\"E\": ").exact(proven.energy_v2s).text(", \"switch_times\": [");

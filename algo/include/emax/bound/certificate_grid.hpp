@@ -22,13 +22,16 @@ inline constexpr std::size_t kMinCertificateCells = 32;
 ///
 ///     E(x) <= v' Phi v + sum over cells i of cost[i] (1 - v_i^2).
 ///
-/// v_i is the mean of x over cell i. E is convex, so E(x) <= E(v) + 2 <g, e> with g = Phi x and e =
-/// x
-/// - v. On each cell, F(t) = integral of e from its start to t is 0 at both ends, so <g, e> = -<g',
-/// F>, and |g'| <= m_1 (`KernelBounds`). F rises by at most 1 - v_i and falls by at most 1 + v_i
-/// per unit of time: between two of its zeros at a distance l the integral of |F| is at most that
-/// of a tent, (1 - v_i^2) l^2/4, and the sum of the l^2 is at most the square of the cell's width
-/// h. So cost = m_1 h^2/2.
+/// v_i is the mean of x over cell i. Let g = Phi x and e = x - v, so E(x) = E(v) + 2 <g, e> - E(e).
+/// On each cell, F(t) = integral of e from its start to t is 0 at both ends, so <g, e> = -<g', F>,
+/// and |g'| <= m_1 (`KernelBounds`). F rises by at most 1 - v_i and falls by at most 1 + v_i per
+/// unit of time: between two of its zeros at a distance l the integral of |F| is at most that of a
+/// tent, (1 - v_i^2) l^2/4, and the sum of the l^2 is at most the square of the cell's width h. So
+/// cost = m_1 h^2/2.
+///
+/// E(e) is not negative where E is a square. For the energy difference it is at least -||Kf e||^2,
+/// and Kf e = (s Kf) F with ||F|| <= (h/pi) ||e|| on each cell and ||e||^2 <= h (1 - v_i^2): the
+/// cost is h (h max|s Kf|/pi)^2 more.
 struct CertificateGrid {
   static constexpr std::size_t kEdges = kMaxCertificateCells + 1;
 

@@ -19,7 +19,7 @@ std::size_t mesh_intervals(const ModalModel& model, double duration_s) noexcept;
 
 /// The number of doubles that `KernelBounds` needs for such a mesh.
 constexpr std::size_t kernel_bounds_numbers(std::size_t intervals) noexcept {
-  return (4 * kMaxModes + 2) * (intervals + 1);
+  return (4 * kMaxModes + 3) * (intervals + 1);
 }
 
 /// Bounds of how fast the gradient of the energy changes, by the kernel phi(t, s) of paper equation
@@ -33,8 +33,11 @@ constexpr std::size_t kernel_bounds_numbers(std::size_t intervals) noexcept {
 /// derivatives are bounded by norms of k in closed form. Nothing is estimated but rounding, for
 /// which a relative 1e-9 is added.
 ///
-/// Only for the integral-square error and the in-band error without a delay, and an impulse
-/// response that starts at zero (filters of order 2 and more).
+/// Where k does not start at zero (filters of order 1, a delayed reference), the derivative jumps
+/// by k(0)^2 at s = t. Between two mesh points in t the jump is somewhere in a strip of one step in
+/// s, which adds the step times [k(0)^2/2 + a step times the derivative's own slope].
+///
+/// For the energy difference phi is that of the sensor less that of the filter.
 class KernelBounds {
  public:
   /// Prepares the mesh. Model and memory must stay until all is read.
@@ -42,10 +45,9 @@ class KernelBounds {
   /// @param[in] numbers At least `kernel_bounds_numbers(mesh_intervals(...))`.
   /// @returns
   /// * kOk: `step()` until `done()`.
-  /// * kInvalidArgument: The duration; or the criterion is the energy difference, the reference is
-  ///   delayed, the sensor is ideal, or its poles are those of the filter.
+  /// * kInvalidArgument: The duration; or the sensor is ideal, or its poles are those of the
+  /// filter.
   /// * kLostDigits: T is so short, or sensor and filter are so alike, that rounding hides k.
-  /// * kInvalidOrder: A filter of order 1.
   /// * kTooManyCells: The mesh would be too large: shorten T.
   /// * kBufferTooSmall: `numbers` is.
   Status start(const ModalModel& model, double duration_s, Span<double> numbers) noexcept;
@@ -60,16 +62,23 @@ class KernelBounds {
   /// @returns An upper bound of m_1 over [`from_s`, `to_s`], which is cut to [0, T].
   double bound(double from_s, double to_s) const noexcept;
 
+  /// @returns For the energy difference an upper bound of |s Kf| at all frequencies, in
+  /// V/(m/s^2)/s;
+  ///   else 0. What is integrated from a signal e is passed by the filter as no more than this
+  ///   times e.
+  double filter_slope() const noexcept;
+
  private:
   void fill_tables(Span<double> numbers) noexcept;
-  void fill_norms() noexcept;
+  struct Norms;
+  Norms norms_of(std::size_t first, std::size_t last) const noexcept;
+  double remainder_of(const Norms& norms) const noexcept;
+  bool fill_remainder() noexcept;
   struct RowSums;
   bool has_digits() const noexcept;
   void fill_row(std::size_t row) noexcept;
   void add_from_row_on(std::size_t row, RowSums& sums) const noexcept;
   void add_up_to_row(std::size_t row, RowSums& sums) const noexcept;
-
-  static constexpr std::size_t kDerivatives = 4;
 
   const ModalModel* model_ = nullptr;
   double duration_s_ = 0.0;
@@ -77,14 +86,13 @@ class KernelBounds {
   std::size_t intervals_ = 0;
   std::size_t stride_ = 1;  // Mesh points in s for one in t.
   std::size_t next_row_ = 0;
-  double norms_[kDerivatives] = {};              // Of the derivatives of k.
-  double starts_[kDerivatives] = {};             // |k^(n)(0)|.
   double remainder_ = 0.0;                       // Of m_1, from one mesh point to the next.
   Span<double> exponential_re_[kMaxModes] = {};  // e^(p d), by the distance d.
   Span<double> exponential_im_[kMaxModes] = {};
   Span<double> held_re_[kMaxModes] = {};  // U_p(T - s), by s.
   Span<double> held_im_[kMaxModes] = {};
-  Span<double> impulse_;    // k.
+  Span<double> impulse_;    // k; for the energy difference that of the sensor.
+  Span<double> taken_off_;  // 0; for the energy difference k of the filter.
   Span<double> integrals_;  // Over s at each mesh point in t.
 };
 
@@ -94,8 +102,8 @@ static_assert(std::is_trivially_copyable_v<KernelBounds>);
 /// phi(t, s) = Re sum r_p e^(p (s - t)) U_p(T - s) for t <= s.
 void held_responses(const ModalModel& model, double tau_s, Complex* held) noexcept;
 
-/// The energy up to T of the response to a unit pulse of length `width_s` that starts `left_s`
-/// before T; `width_s` <= `left_s`.
+/// The energy, or energy difference, up to T of the response to a unit pulse of length `width_s`
+/// that starts `left_s` before T; `width_s` <= `left_s`.
 double pulse_energy(const ModalModel& model, double left_s, double width_s) noexcept;
 
 }  // namespace emax
