@@ -3,7 +3,8 @@
 
     check_certificate.py CERTIFICATE      exit status 0 and the proven bound, or 1 and the reason
 
-The certificate says: every signal |x| <= a on [0, T] has E <= bound. What is believed of it: the
+The certificate says: every signal |x| <= a on [0, T] has E <= bound, for one device or for all in
+a box. What is believed of it: the
 model, T, a, the edges of the cells, the multipliers and the y, as numbers that prove something or
 do not. What is found anew, with every constant enclosed in a ball (`balls.py`) or an interval
 (mpmath's `iv`), from the poles and residues of the error response k = sum of r e^(p t):
@@ -15,6 +16,8 @@ do not. What is found anew, with every constant enclosed in a ball (`balls.py`) 
    by Rump's criterion (BIT 46 (2006) 433): with (n + 2) 2^-52 of the trace taken off the diagonal
    a factorisation in floating point proves that the matrix is positive semidefinite.
 4. The bound, a^2 (sum of y + sum of multipliers + sum of costs), in rational numbers.
+5. For a box of devices all that for each of its corners, and what the energy of a signal may be
+   more inside, by bounds of the second derivatives of the sensor's response by f0 and by beta.
 
 What is assumed: the lemma and its proof in `algo/README.md`, IEEE arithmetic, and that NumPy,
 LAPACK and mpmath do what they say.
@@ -23,10 +26,12 @@ LAPACK and mpmath do what they say.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import sys
 from fractions import Fraction
+from typing import Callable, Iterable
 
 import numpy as np
 from mpmath import iv
@@ -56,7 +61,11 @@ def require(condition: bool, reason: str) -> None:
 class Response:
     """Poles p and residues r of k(t) = sum of r e^(p t): intervals, and balls of them."""
 
-    def __init__(self, poles: list, residues: list, starts_at_zero: bool) -> None:
+    def __init__(self, sensor: list, filter_poles: list, residues: list, starts_at_zero: bool) -> None:
+        poles = sensor + filter_poles
+        # Where the conjugate of each pole is: both ways round in both lists.
+        self.mirrors = [len(sensor) - 1 - i for i in range(len(sensor))]
+        self.mirrors += [len(poles) - 1 - i for i in range(len(filter_poles))]
         self.poles, self.residues, self.starts_at_zero = poles, residues, starts_at_zero
         self.p = Ball.stack([Ball.of_interval(pole) for pole in poles])
         self.r = Ball.stack([Ball.of_interval(r) for r in residues])
@@ -95,8 +104,8 @@ class Response:
         starts_at_zero = order >= 2 and system.delay == 0.0
         if system.criterion == "difference":
             filter_residues = [gain * r for r in filter_residues]
-            return [(1.0, Response(sensor_poles, sensor_residues, True)),
-                    (-1.0, Response(filter_poles, filter_residues, starts_at_zero))]
+            return [(1.0, Response(sensor_poles, [], sensor_residues, True)),
+                    (-1.0, Response([], filter_poles, filter_residues, starts_at_zero))]
         if system.criterion == "band":
             # The delayed filter is h(t - delay) continued to earlier t by its modes.
             delay = iv.mpf(system.delay)
@@ -106,12 +115,24 @@ class Response:
                                for r, p in zip(filter_residues, filter_poles)]
         else:
             filter_residues = [-gain * r for r in filter_residues]
-        return [(1.0, Response(sensor_poles + filter_poles, sensor_residues + filter_residues,
+        return [(1.0, Response(sensor_poles, filter_poles, sensor_residues + filter_residues,
                                starts_at_zero))]
 
     @staticmethod
     def conjugate(z: object) -> object:
         return iv.mpc(z.real, -z.imag)
+
+    def over_times(self, function: Callable[[object, object], object], times: list) -> Ball:
+        """Function(pole, time) for each time and pole, in intervals; real up to conjugation."""
+        balls: dict[int, list[Ball]] = {}
+        for i, pole in enumerate(self.poles):
+            mirror = self.mirrors[i]
+            if mirror in balls:
+                balls[i] = [Ball(np.conj(ball.middle), ball.radius) for ball in balls[mirror]]
+            else:
+                balls[i] = [Ball.of_interval(function(pole, time)) for time in times]
+        return Ball(np.array([[complex(ball.middle) for ball in balls[i]] for i in balls]).T,
+                    np.array([[float(ball.radius) for ball in balls[i]] for i in balls]).T)
 
     def norms(self, count: int) -> list[float]:
         """At least the square roots of the integrals of |k^(n)|^2 over [0, infinity)."""
@@ -262,13 +283,13 @@ def part_matrix(response: Response, edges: Array) -> tuple[Array, Array]:
     modes, cells = len(p.middle), len(edges) - 1
     width = np.diff(edges)  # Exact or rounded once.
     widths = Ball(width, U * width)[:, None]
-    left = edges[-1] - edges
-    to_end = Ball(left, U * np.abs(left))[:, None]  # T - edge.
     row = p[None, :]
-    decay = (row * widths).exp()
-    end = (row * to_end).exp()
+    exact = [iv.mpf(float(edge)) for edge in edges]
+    exact_widths = [stop - start for start, stop in zip(exact, exact[1:])]
+    decay = response.over_times(lambda pole, time: iv.exp(pole * time), exact_widths)
+    early = response.over_times(lambda pole, time: (iv.exp(pole * time) - 1) / pole, exact_widths)
+    end = response.over_times(lambda pole, time: iv.exp(pole * time), [exact[-1] - edge for edge in exact])
     one = Ball(1.0)
-    early = (decay - one) * row.inverse()
     late_middle = np.zeros((cells, modes), dtype=complex)
     late_radius = np.zeros((cells, modes))
     diagonal = Ball(np.zeros(cells))
@@ -302,45 +323,74 @@ def part_matrix(response: Response, edges: Array) -> tuple[Array, Array]:
 
 
 class Certificate:
-    """A file of `emax certify`, with the plain faults of its form found."""
+    """A file of `emax certify`, with the plain faults of its form found.
+
+    Format 2 is about one device, format 3 about a box of them: knots along S, f0 and beta, whose
+    products are the corners, beta running fastest. `systems` are the corners, `y` has a row for each.
+    """
 
     def __init__(self, data: dict) -> None:
         require(isinstance(data, dict) and "certificate" in data, "not a certificate")
         require(data["certificate"] != 1,
                 "a certificate of format 1, from before version 2 of the proof; "
                 "make a new one with emax certify")
-        require(data["certificate"] == 2, "a certificate of a format that is not known here")
+        require(data["certificate"] in (2, 3), "a certificate of a format that is not known here")
+        self.is_box = data["certificate"] == 3
         try:
-            model, limits = data["model"], data["signal"]
-            self.system = reference.System(
-                reference.Accelerometer(float(model["S"]), float(model["f0"]),
-                                        float(model["beta"])),
-                int(model["order"]), float(model["cutoff"]), float(model["gain"]),
-                model.get("criterion", "ise"), float(model.get("delay", 0.0)))
+            model, limits, energy = data["box" if self.is_box else "model"], data["signal"], data["energy"]
+            self.knots = [[float(value) for value in (model[name] if self.is_box else [model[name]])]
+                          for name in ("S", "f0", "beta")]
+            self.gain_follows = self.is_box and model["gain"] is None
+            self.systems = [self.system_of(model, device) for device in itertools.product(*self.knots)]
             self.time, self.limit = float(limits["T"]), float(limits["a"])
-            self.energy = float(data["energy"]["E"])
-            self.switches = [float(t) for t in data["energy"]["switch_times"]]
+            self.energy = float(energy["E"])
+            self.switches = [float(t) for t in energy["switch_times"]]
+            self.best = (self.system_of(model, (float(energy[name]) for name in ("S", "f0", "beta")))
+                         if self.is_box else self.systems[0])
             self.bound = float(data["bound"])
+            self.curvature = ([float(data["curvature"][name]) for name in ("f0", "beta")]
+                              if self.is_box else [0.0, 0.0])
             self.edges = np.array(data["edges"], dtype=float)
             self.costs = np.array(data["costs"], dtype=float)
             self.unit = float(data["unit"])
             self.multipliers = np.array(data["multipliers"], dtype=np.int64).reshape(-1, 5)
-            self.y = np.array(data["y"], dtype=np.int64)
+            self.y = np.array(data["y"] if self.is_box else [data["y"]], dtype=np.int64)
         except (KeyError, TypeError, ValueError) as error:
             raise Rejected(f"not a certificate: {error!r}") from error
         self.cells = len(self.edges) - 1
         self.check_form()
 
+    @staticmethod
+    def system_of(model: dict, device: Iterable[float]) -> reference.System:
+        gain = None if model["gain"] is None else float(model["gain"])
+        return reference.System(reference.Accelerometer(*device), int(model["order"]),
+                                float(model["cutoff"]), gain, model.get("criterion", "ise"),
+                                float(model.get("delay", 0.0)))
+
+    def check_box(self) -> None:
+        sensitivities, frequencies, dampings = self.knots
+        for values in self.knots:
+            require(len(values) >= 1 and values[0] > 0.0 and bool(np.all(np.diff(values) > 0.0)),
+                    "knots of the box do not ascend")
+        require(len(sensitivities) <= 2, "more than two knots along S")
+        require(not self.gain_follows or len(sensitivities) == 1, "a gain that follows more than one S")
+        require(dampings[-1] < 1.0, "a damping of 1 or more")
+        best = self.best.sensor
+        for value, knots in zip((best.S, best.f0, best.beta), self.knots):
+            require(knots[0] <= value <= knots[-1], "its signal is for a device outside the box")
+
     def check_form(self) -> None:
-        system = self.system
+        self.check_box()
+        system = self.systems[0]
         require(system.criterion in ("ise", "difference", "band"), "a criterion that is not covered")
         require(1 <= system.order <= 15, "a filter that is not of order 1 to 15")
         most = 1.0 / (2.0 * math.pi * system.cutoff) if system.criterion == "band" else 0.0
         require(0.0 <= system.delay <= most, "a delay that is not covered")
         require(self.cells >= 2 and self.edges[0] == 0.0 and self.edges[-1] == self.time
                 and bool(np.all(np.diff(self.edges) > 0.0)), "edges do not go from 0 to T")
-        require(self.costs.shape == (self.cells,) and self.y.shape == (self.cells,),
+        require(self.costs.shape == (self.cells,) and self.y.shape[1:] == (self.cells,),
                 "costs or y do not fit the edges")
+        require(len(self.y) == len(self.systems), "there is not a y for each corner")
         require(self.limit > 0.0 and math.isfinite(self.limit), "the limit is not above 0")
         require(self.unit > 0.0 and math.frexp(self.unit)[0] == 0.5, "unit is no power of two")
         require(bool(np.all(self.y >= 0)), "a negative y")
@@ -349,13 +399,12 @@ class Certificate:
                 "a multiplier of cells that are not i < j < k")
         require(bool(np.all((0 <= kind) & (kind <= 3))), "a multiplier of no known kind")
         require(bool(np.all(units >= 0)), "a negative multiplier of an inequality")
-        largest = max(int(np.sum(units)), int(np.sum(self.y)))
+        largest = max(int(np.sum(units)), int(np.max(np.sum(self.y, axis=1))))
         require(largest < 2**51, "multipliers or y are too large for this check")
 
 
-def check_costs(certificate: Certificate, slope: SlopeBound) -> None:
+def check_costs(certificate: Certificate, system: reference.System, slope: SlopeBound) -> None:
     """At least m_1 h^2/2, and h^3 (max |s Kf|/pi)^2 for the energy difference: |s Kf| <= G 2 pi fc."""
-    system = certificate.system
     rest = Fraction(0)
     if system.criterion == "difference":
         rest = (2 * Fraction(system.filter.gain) * Fraction(system.cutoff)) ** 2
@@ -367,17 +416,22 @@ def check_costs(certificate: Certificate, slope: SlopeBound) -> None:
                 f"the cost of cell {cell} is too low")
 
 
-def check_slack(certificate: Certificate, matrix: Array, radius: Array) -> None:
-    """Diag(y) - Q' is positive semidefinite, Q' = Phi - Diag(costs) - multipliers."""
+def multipliers_matrix(certificate: Certificate) -> Array:
+    """Twice what the multipliers take off Phi, in units; whole numbers are exact."""
     i, j, k, kind, units = certificate.multipliers.T
-    cells = certificate.cells
     signs = np.array(TRIANGLE_SIGNS)[kind]
-    doubled = np.zeros((cells, cells), dtype=np.int64)  # In half units; whole numbers are exact.
+    doubled = np.zeros((certificate.cells, certificate.cells), dtype=np.int64)
     for column, (first, second) in enumerate(((i, j), (j, k), (i, k))):
         np.add.at(doubled, (first, second), units * signs[:, column])
         np.add.at(doubled, (second, first), units * signs[:, column])
-    doubled += np.diag(2 * certificate.y)
-    exact = 0.5 * certificate.unit * doubled  # Below 2^53 half units.
+    return doubled
+
+
+def check_slack(certificate: Certificate, doubled: Array, y: Array, matrix: Array,
+                radius: Array) -> None:
+    """Diag(y) - Q' is positive semidefinite, Q' = Phi - Diag(costs) - multipliers."""
+    cells = certificate.cells
+    exact = 0.5 * certificate.unit * (doubled + np.diag(2 * y))  # Below 2^53 half units.
     costs = np.diag(certificate.costs)
     slack = (exact - matrix) + costs
     off = radius + 4.0 * U * (np.abs(exact) + np.abs(matrix) + costs)
@@ -392,11 +446,121 @@ def check_slack(certificate: Certificate, matrix: Array, radius: Array) -> None:
         raise Rejected("Diag(y) - Q' is not positive definite") from error
 
 
+# ------------------------------------------------------------------------------------------- boxes
+
+
+def root_mean_square(values: Array, step: float) -> float:
+    """At least the root of the mean over v of (integral up to v of q)^2, `values` >= q on each step."""
+    integrals = np.cumsum(values) * step * (1.0 + 8.0 * len(values) * U)
+    return math.sqrt(float(np.sum(integrals**2)) / len(values)) * (1.0 + 8.0 * len(values) * U)
+
+
+def sensor_curvatures(frequency: float, low: float, high: float, time: float) -> tuple[float, float]:
+    """At least the sizes of w^2 d^2 K/dw^2 x and of d^2 K/dbeta^2 x over [0, T], for |x| <= 1.
+
+    In units of sqrt(T) S; w is 2 pi f0. The sensor has frequencies up to `frequency` and dampings from `low` to
+    `high`. With u = 2 pi f0 t and pole -beta + i kappa, |pole| = 1, k = S 2 pi f0 Im e^(pole u)/kappa.
+    |Im z| <= |z| gives what is integrated: for f0 u |2 pole + pole^2 u| e^(-beta u)/kappa, and for beta
+    |A^2 + dA/dbeta| e^(-beta u)/kappa with A = i pole u/kappa + beta/kappa^2, so that
+    |A|^2 = u^2/kappa^2 - 2 u beta/kappa^2 + beta^2/kappa^4 and
+    dA/dbeta = (1 + beta^2)/kappa^4 - i u/kappa^3. Each factor is taken where it is largest: on a step
+    of u at one of its ends, and of beta at `low` or `high`.
+    """
+    count = 50000
+    end = 2.0 * math.pi * frequency * time * RAISE
+    step = end / count * RAISE
+    first = np.arange(count) * step * (1.0 - 4.0 * U)
+    last = np.arange(1, count + 1) * step * RAISE
+    square_low, square_high = (1.0 - low * low) * RAISE, (1.0 - high * high) / RAISE  # kappa^2
+    exponential = (Ball(-low) * Ball(first)).exp()
+    decay = exponential.size() / math.sqrt(square_high) * RAISE**2
+
+    def quadratic(u: Array) -> Array:
+        return 4.0 - 4.0 * low * u + u * u  # Convex in u.
+
+    frequency_values = last * np.sqrt(np.maximum(quadratic(first), quadratic(last))) * decay
+    size = last**2 / square_high - 2.0 * first * low / square_low + high**2 / square_high**2
+    change = np.sqrt(((1.0 + high**2) / square_high**2) ** 2 + last**2 / square_high**3)
+    damping_values = (size + change) * decay
+    raised = 1.0 + 2.0**-40  # Roundings of a few operations, and cancellation by 2 in `size`.
+    return (root_mean_square(frequency_values, step) * raised,
+            root_mean_square(damping_values, step) * raised)
+
+
+def filter_integral(system: reference.System, time: float) -> float:
+    """At least the integral of |h| over [0, T], h the filter with a gain of 1: by the trapezoidal rule
+    and step^2/8 times the integral of |h''|, which is at most sqrt(T) times its norm."""
+    unit = reference.System(system.sensor, system.order, system.cutoff, 1.0, "difference")
+    response = Response.parts_of(unit)[1][1]
+    count = 4096
+    step = Fraction(time) / count
+    base = (response.p * Ball(float(step), float(step) * U)).exp()
+    h = (response.r[:, None] * SlopeBound._powers(base, count + 1)).sum(0)
+    total = float(np.sum(h.size())) * (1.0 + 8.0 * count * U) * float(step)
+    curvature = math.sqrt(time) * response.norms(3)[2]
+    return (total + 0.125 * float(step) ** 2 * curvature) * (1.0 + 2.0**-40)
+
+
+def cells_of(knots: list[float]) -> list[tuple[float, float]]:
+    return list(zip(knots, knots[1:])) or [(knots[0], knots[0])]
+
+
+def check_curvature(certificate: Certificate) -> None:
+    """w^2/4 times the size of K_p'' x, w the width of a cell of the box, in each cell."""
+    sensitivities, frequencies, dampings = certificate.knots
+    system = certificate.systems[0]
+    factor = sensitivities[-1] * math.sqrt(certificate.time) * RAISE
+    if system.criterion == "band":
+        factor *= filter_integral(system, certificate.time)
+    needed = [0.0, 0.0]
+    for (first, last), (low, high) in itertools.product(cells_of(frequencies), cells_of(dampings)):
+        sizes = sensor_curvatures(last, low, high, certificate.time)
+        for side, width in enumerate(((last - first) / first, high - low)):
+            term = 0.25 * width**2 * sizes[side] * factor * (1.0 + 16.0 * U)
+            needed[side] = max(needed[side], term)
+    for name, term, given in zip(("f0", "beta"), needed, certificate.curvature):
+        require(given >= term, f"the curvature by {name} is too low")
+
+
 def proven_bound(certificate: Certificate) -> Fraction:
-    units = int(np.sum(certificate.y)) + int(np.sum(certificate.multipliers[:, 4]))
+    """From the largest of the corners; between them B <= that + q sqrt(B + W).
+
+    q is the sum of the curvature terms times a. W is 0, and for the energy difference (G a)^2 T, as
+    ||Ka x||^2 <= B + ||Kf x||^2. The largest B is the square of z = (q + sqrt(q^2 + 4 (corners +
+    W)))/2 less W.
+    """
+    units = int(np.max(np.sum(certificate.y, axis=1))) + int(np.sum(certificate.multipliers[:, 4]))
     total = units * Fraction(certificate.unit)
     total += sum((Fraction(float(cost)) for cost in certificate.costs), Fraction(0))
-    return Fraction(certificate.limit) ** 2 * total
+    corners = Fraction(certificate.limit) ** 2 * total
+    terms = Fraction(certificate.curvature[0]) + Fraction(certificate.curvature[1])
+    if terms == 0:
+        return corners
+    more = Fraction(0)
+    if certificate.systems[0].criterion == "difference":
+        gain = max(Fraction(system.filter.gain) for system in certificate.systems)
+        more = (gain * Fraction(certificate.limit)) ** 2 * Fraction(certificate.time)
+
+    def interval(value: Fraction) -> object:
+        return iv.mpf(value.numerator) / iv.mpf(value.denominator)
+
+    q = interval(terms * Fraction(certificate.limit))
+    z = (q + iv.sqrt(q * q + 4 * interval(corners + more))) / 2
+    return Fraction(float((z * z - interval(more)).b) * RAISE)
+
+
+def slope_of(system: reference.System, time: float) -> SlopeBound:
+    try:
+        return SlopeBound(Response.parts_of(system), time)
+    except (Undecided, ZeroDivisionError) as error:
+        raise Rejected(f"not decided: {error}") from error
+
+
+def matrix_of(system: reference.System, edges: Array) -> tuple[Array, Array]:
+    try:
+        return cell_matrix(Response.parts_of(system), edges)
+    except (Undecided, ZeroDivisionError) as error:
+        raise Rejected(f"not decided: {error}") from error
 
 
 def check(data: dict) -> tuple[Certificate, float]:
@@ -405,14 +569,13 @@ def check(data: dict) -> tuple[Certificate, float]:
     proven = proven_bound(certificate)
     require(proven <= Fraction(certificate.bound),
             f"it says {certificate.bound:.12g} V^2 s, but proves {float(proven):.12g} V^2 s only")
-    try:
-        parts = Response.parts_of(certificate.system)
-        check_costs(certificate, SlopeBound(parts, certificate.time))
-        matrix, radius = cell_matrix(parts, certificate.edges)
-    except (Undecided, ZeroDivisionError) as error:
-        raise Rejected(f"not decided: {error}") from error
-    check_slack(certificate, matrix, radius)
-    reached = reference.switching_energy(certificate.system, certificate.switches,
+    doubled = multipliers_matrix(certificate)
+    if certificate.is_box:
+        check_curvature(certificate)
+    for system, y in zip(certificate.systems, certificate.y):
+        check_costs(certificate, system, slope_of(system, certificate.time))
+        check_slack(certificate, doubled, y, *matrix_of(system, certificate.edges))
+    reached = reference.switching_energy(certificate.best, certificate.switches,
                                          certificate.time, certificate.limit)
     require(abs(reached - certificate.energy) <= 1e-9 * reached,
             "its signal does not have the energy that it says")
@@ -455,7 +618,11 @@ def main() -> int:
     print(f"proven: E <= {bound:.9g} V^2 s for every signal within +-{certificate.limit:g} m/s^2 "
           f"on [0, {certificate.time:g} s]; {certificate.energy:.9g} V^2 s is reached, "
           f"{gap:.3f} % below")
-    system = certificate.system
+    if certificate.is_box:
+        ranges = ", ".join(f"{name} from {knots[0]:.9g} to {knots[-1]:.9g}"
+                           for name, knots in zip(("S", "f0", "beta"), certificate.knots))
+        print(f"that holds for every device with {ranges}")
+    system = certificate.systems[0]
     if system.delay > 0.0:
         off = delay_error(system) * system.filter.gain * certificate.limit
         whole = (math.sqrt(bound) + off * math.sqrt(certificate.time)) ** 2

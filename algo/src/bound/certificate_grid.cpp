@@ -66,13 +66,14 @@ Status lay_out_cells(double duration_s, std::size_t wanted, Span<const double> s
   return Status::kOk;
 }
 
-void fill_costs(const KernelBounds& bounds, double margin, CertificateGrid& grid) noexcept {
+void raise_costs(const KernelBounds& bounds, double margin, CertificateGrid& grid) noexcept {
   for (std::size_t cell = 0; cell < grid.cells; ++cell) {
     const double from_s = grid.edges_s[cell];
     const double to_s = grid.edges_s[cell + 1];
     const double width_s = to_s - from_s;
     const double rest = width_s * (bounds.filter_slope() / kPi) * (bounds.filter_slope() / kPi);
-    grid.costs[cell] = margin * (0.5 * bounds.bound(from_s, to_s) + rest) * width_s * width_s;
+    const double cost = margin * (0.5 * bounds.bound(from_s, to_s) + rest) * width_s * width_s;
+    grid.costs[cell] = cost > grid.costs[cell] ? cost : grid.costs[cell];
   }
 }
 
@@ -123,6 +124,58 @@ void fill_certificate_phi(const ModalModel& model, const CertificateGrid& grid, 
       }
       matrix[i * cells + j] = sum;
       matrix[j * cells + i] = sum;
+    }
+  }
+}
+
+void fill_row_sizes(const ModalModel& model, const CertificateGrid& grid, Span<double> sizes,
+                    Span<double> scratch) noexcept {
+  const Span<const Mode> modes = model.modes();
+  const std::size_t cells = grid.cells;
+  const double duration_s = grid.edges_s[cells];
+  const auto size = [](Complex z) { return sqrt(norm(z)); };
+  // Sizes of early_p(i) r_p and of late_p(i), as in the matrix.
+  const auto early = [&](std::size_t p, std::size_t i) -> double& {
+    return scratch[2 * (p * cells + i)];
+  };
+  const auto late = [&](std::size_t p, std::size_t i) -> double& {
+    return scratch[2 * (p * cells + i) + 1];
+  };
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double width_s = grid.edges_s[i + 1] - grid.edges_s[i];
+    const double left_s = duration_s - grid.edges_s[i];
+    sizes[i] = 0.0;
+    for (std::size_t p = 0; p < modes.size(); ++p) {
+      const Complex pole = modes[p].pole;
+      const double once = width_s * size(phi1(width_s * pole));
+      double both = 0.0;
+      double during = 0.0;
+      for (std::size_t q = 0; q < modes.size(); ++q) {
+        const double other = width_s * size(phi1(width_s * modes[q].pole));
+        const double decay =
+            exp(left_s * (pole.re + modes[q].pole.re) - width_s * modes[q].pole.re);
+        const double weight = 0.5 * size(modes[q].residue) *
+                              (size(model.gramian(p, q)) + size(model.conjugate_gramian(p, q)));
+        both += weight * (decay * other + once);
+        during += weight * (other + width_s + 2.0 * (decay * other + once));
+      }
+      early(p, i) = once * size(modes[p].residue);
+      late(p, i) = both;
+      sizes[i] += size(modes[p].residue) * size(model.inverse_pole(p)) * during;
+    }
+  }
+  for (std::size_t p = 0; p < modes.size(); ++p) {
+    double from_before = 0.0;
+    double from_behind = 0.0;
+    const auto decay = [&](std::size_t i) {
+      return exp((grid.edges_s[i + 1] - grid.edges_s[i]) * modes[p].pole.re);
+    };
+    for (std::size_t i = 0; i < cells; ++i) {
+      sizes[i] += late(p, i) * from_before;
+      from_before = from_before * decay(i) + early(p, i);
+      const std::size_t back = cells - 1 - i;
+      sizes[back] += early(p, back) * from_behind;
+      from_behind = from_behind * decay(back) + late(p, back);
     }
   }
 }

@@ -16,8 +16,9 @@ constexpr double kUnitsPerOne = 1073741824.0;  // 2^30
 /// Costs are this much larger than what has been shown, so that a check that finds them by a mesh
 /// of its own confirms them.
 constexpr double kCostMargin = 1.02;
-/// Of the scaled matrix: what has to be left on the diagonal when it is factorised. The rounding of
-/// a factorisation of 1000 cells is below 1000^2 times 2^-53 times the largest y, 1.2e-10.
+/// Of the scaled matrix: what has to be left on the diagonal when it is factorised, beside the
+/// rounding of the matrix. That of a factorisation of 1000 cells is below 1000^2 times 2^-53 times
+/// the largest y, 1.2e-10.
 constexpr double kFactorMargin = 2e-10;
 constexpr double kFirstDecay = 0.9;
 constexpr double kSecondDecay = 0.99;
@@ -84,17 +85,35 @@ Status EnergyCertificate::take_workspace(const CertificateWorkspace& workspace,
 Status EnergyCertificate::start(const ModalModel& model, double duration_s, std::size_t cells,
                                 Span<const double> switches_s,
                                 const CertificateWorkspace& workspace) noexcept {
+  return start(Span<const ModalModel>(&model, 1), duration_s, cells, switches_s, workspace);
+}
+
+Status EnergyCertificate::start(Span<const ModalModel> models, double duration_s, std::size_t cells,
+                                Span<const double> switches_s,
+                                const CertificateWorkspace& workspace) noexcept {
   *this = {};
+  if (models.empty()) {
+    return Status::kInvalidArgument;
+  }
   Status status = lay_out_cells(duration_s, cells, switches_s, grid_);
   if (status != Status::kOk) {
     return status;
   }
-  status = take_workspace(workspace, mesh_intervals(model, duration_s));
+  std::size_t intervals = 0;
+  for (const ModalModel& model : models) {
+    const std::size_t wanted = mesh_intervals(model, duration_s);
+    intervals = wanted > intervals ? wanted : intervals;
+  }
+  status = take_workspace(workspace, intervals);
   if (status != Status::kOk) {
     return status;
   }
-  model_ = &model;
-  return kernel_.start(model, duration_s, workspace.numbers);
+  models_ = models;
+  // All are tried, the first one last.
+  for (std::size_t left = models.size(); left > 0 && status == Status::kOk; --left) {
+    status = kernel_.start(models[left - 1], duration_s, workspace.numbers);
+  }
+  return status;
 }
 
 Status EnergyCertificate::start(Span<const double> matrix, std::size_t cells,
@@ -112,6 +131,9 @@ Status EnergyCertificate::start(Span<const double> matrix, std::size_t cells,
   for (std::size_t i = 0; i < cells * cells; ++i) {
     phi_[i] = matrix[i];
   }
+  for (std::size_t i = 0; i < cells; ++i) {
+    margins_[i] = 0.0;
+  }
   begin();
   return Status::kOk;
 }
@@ -121,17 +143,38 @@ void EnergyCertificate::prepare() noexcept {
     kernel_.step();
     return;
   }
-  fill_costs(kernel_, kCostMargin, grid_);
+  raise_costs(kernel_, kCostMargin, grid_);
+  ++prepared_;
+  if (prepared_ < models_.size()) {
+    const double duration_s = grid_.edges_s[grid_.cells];
+    (void)kernel_.start(models_[prepared_], duration_s, memory_.numbers);  // As tried before.
+    return;
+  }
   // The mesh of the kernel is no longer needed; its place is taken.
   lay_out_memory();
-  const std::size_t cells = grid_.cells;
-  fill_certificate_phi(*model_, grid_, Span<double>(phi_, cells * cells),
-                       Span<double>(scratch_ + cells * cells, 4 * kMaxModes * cells));
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    phi_[cell * cells + cell] -= grid_.costs[cell];
+  fill_phi(models_[0], 1.0);
+  for (std::size_t cell = 0; cell < grid_.cells; ++cell) {
     costs_ += grid_.costs[cell];
   }
   begin();
+}
+
+// Phi less the costs, in units of `scale`.
+void EnergyCertificate::fill_phi(const ModalModel& model, double scale) noexcept {
+  const std::size_t cells = grid_.cells;
+  fill_certificate_phi(model, grid_, Span<double>(phi_, cells * cells),
+                       Span<double>(spare_, 4 * kMaxModes * cells));
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    phi_[cell * cells + cell] -= grid_.costs[cell];
+  }
+  for (std::size_t i = 0; i < cells * cells; ++i) {
+    phi_[i] /= scale;
+  }
+  fill_row_sizes(model, grid_, Span<double>(margins_, cells),
+                 Span<double>(spare_, 4 * kMaxModes * cells));
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    margins_[cell] *= kCertificateRounding / scale;
+  }
 }
 
 void EnergyCertificate::lay_out_memory() noexcept {
@@ -148,6 +191,8 @@ void EnergyCertificate::lay_out_memory() noexcept {
   vectors_ = take(kRank * cells);
   columns_ = take(kRank * cells);
   dual_ = take(cells);
+  margins_ = take(cells);
+  spare_ = take(4 * kMaxModes * cells);
   for (double** const own : {&point_, &trial_, &gradient_, &next_gradient_, &direction_}) {
     *own = take(unknowns());
   }
@@ -180,6 +225,7 @@ void EnergyCertificate::begin() noexcept {
     phi_[i] /= scale_;
   }
   for (std::size_t i = 0; i < cells; ++i) {
+    margins_[i] /= scale_;
     point_[kRank * cells + i] = 0.1;
     for (std::size_t r = 0; r < kRank; ++r) {
       point_[i * kRank + r] = vectors_[i * kRank + r];
@@ -390,7 +436,8 @@ bool EnergyCertificate::is_semidefinite() noexcept {
     for (std::size_t j = i; j < size; ++j) {
       factor[i * size + j] = -matrix_[i * size + j];
     }
-    factor[i * size + i] += static_cast<double>(memory_.duals[i]) / kUnitsPerOne - kFactorMargin;
+    factor[i * size + i] +=
+        static_cast<double>(memory_.duals[i]) / kUnitsPerOne - (kFactorMargin + margins_[i]);
   }
   constexpr std::size_t kPanel = 4;
   for (std::size_t first = 0; first < size; first += kPanel) {
@@ -462,6 +509,19 @@ bool EnergyCertificate::prove() noexcept {
   if (!is_polishing_) {
     take_vectors(point_);
   }
+  return find_bound();
+}
+
+bool EnergyCertificate::prove(std::size_t model) noexcept {
+  fill_phi(models_[model], scale_);
+  set_matrix();
+  for (const TriangleMultiplier& own : multipliers()) {
+    apply(own, static_cast<double>(own.units) / kUnitsPerOne);
+  }
+  return find_bound();
+}
+
+bool EnergyCertificate::find_bound() noexcept {
   settle();
   double low = 0.0;
   double high = 1e-7;

@@ -23,6 +23,7 @@
 #include "emax/identify/frequency_response.hpp"
 #include "emax/model/cascade_response.hpp"
 
+#include "desk/certify/box_proof.hpp"
 #include "desk/certify/certificate_file.hpp"
 #include "desk/cli/console.hpp"
 #include "desk/cli/console_progress.hpp"
@@ -57,6 +58,7 @@ constexpr double kPair_s = 1.7e-4;
 constexpr double kFinest = 4.0;
 // Of the room for cells, with none about switches.
 constexpr double kMostOfRoom = 0.8;
+constexpr double kMostCorners = 500.0;
 constexpr std::size_t kMultipliers = 1'000'000;
 constexpr std::size_t kHash = std::size_t{1} << 21;
 // Inequalities that may come in at once, for each cell.
@@ -69,6 +71,7 @@ struct CertifyOptions {
   double effort_s = 10.0;
   std::uint64_t rounds = 0;  // 0: as the effort allows.
   std::string out_path;      // Empty for no file.
+  BoxOption box;
 };
 
 bool take_effort(std::string_view text, double& effort_s) {
@@ -96,10 +99,16 @@ Syntax syntax_of(CertifyOptions& options) {
                            "limit", "criterion", "reference-delay"}) {
     syntax.options.push_back(report_option(report, name));
   }
-  syntax.options.push_back(report_option(report, "json",
-                                         "{E,bound,gap,cells,multipliers,nodes,seconds,\n"
-                                         "E_range,warnings} on standard output instead of text"));
+  syntax.options.push_back(
+      report_option(report, "json",
+                    "{E,bound,gap,cells,multipliers,nodes,corners,\n"
+                    "seconds,E_range,warnings} on standard output instead of text"));
   const std::string heading = syntax.options.back().heading;
+  syntax.options.push_back(
+      {"box", heading, "auto|uS,uf0,ubeta", "", "auto or three numbers, uS,uf0,ubeta",
+       "a bound for all devices within +-uS, +-uf0, +-ubeta;\n"
+       "auto: the uncertainties of --model or of the fit",
+       [&options](std::string_view text) { return take_box(text, options.box); }});
   syntax.options.push_back(
       {"effort", heading, "SECONDS", "10", "a number of seconds above 0",
        "time of the processor to spend on the bound;\n"
@@ -199,17 +208,35 @@ double quick_bound(const ModalModel& model, double duration_s) {
   return status == Status::kOk ? bound.bound() : std::numeric_limits<double>::infinity();
 }
 
+// The same for all devices of a box.
+double quick_bound(const BoxProof& box, double duration_s) {
+  double largest = 0.0;
+  for (const ModalModel& model : box.models()) {
+    largest = std::max(largest, quick_bound(model, duration_s));
+  }
+  return box.bound(largest);
+}
+
+// Corners take what is left of the effort.
+std::size_t most_corners(const CertifyOptions& options) {
+  return static_cast<std::size_t>(std::min(8.0 + 2.0 * options.effort_s, kMostCorners));
+}
+
 // Memory of a certificate, and the certificate.
 class Work final {
  public:
-  Problem start(const ModalModel& model, const SwitchingSignal& signal, double effort_s) {
+  Problem start(Span<const ModalModel> models, const SwitchingSignal& signal, double effort_s) {
+    const ModalModel& model = models[0];
     const double duration_s = signal.duration_s();
     const auto coarsest = static_cast<double>(coarsest_certificate(model, duration_s));
     const double affordable = std::sqrt(effort_s / kPair_s);
     const double finest =
         std::min(kFinest * coarsest, kMostOfRoom * static_cast<double>(kMaxCertificateCells));
     const auto cells = static_cast<std::size_t>(std::max(coarsest, std::min(affordable, finest)));
-    const std::size_t intervals = std::min(mesh_intervals(model, duration_s), kMaxMesh);
+    std::size_t intervals = 0;
+    for (const ModalModel& own : models) {
+      intervals = std::max(intervals, std::min(mesh_intervals(own, duration_s), kMaxMesh));
+    }
     numbers_.resize(certificate_numbers(kMaxCertificateCells, intervals));
     multipliers_.resize(kMultipliers);
     hash_.resize(kHash);
@@ -221,9 +248,9 @@ class Work final {
     workspace.hash = {hash_.data(), hash_.size()};
     workspace.violated = {violated_.data(), violated_.size()};
     workspace.duals = {duals_.data(), duals_.size()};
-    Status status = certificate_->start(model, duration_s, cells, signal.times_s(), workspace);
+    Status status = certificate_->start(models, duration_s, cells, signal.times_s(), workspace);
     if (status == Status::kTooManyCells) {  // Not finer about the switches, for there are many.
-      status = certificate_->start(model, duration_s, cells, {}, workspace);
+      status = certificate_->start(models, duration_s, cells, {}, workspace);
     }
     if (status == Status::kTooManyCells) {
       return bad_input(
@@ -310,6 +337,23 @@ Problem prove(EnergyCertificate& certificate, double energy, const CertifyOption
                    "seconds of --effort to help");
 }
 
+// The corners but the first, which is proven.
+Problem prove_corners(EnergyCertificate& certificate, BoxProof& box) {
+  ConsoleProgress progress;
+  const std::size_t count = box.models().size();
+  box.take(0, certificate);
+  for (std::size_t model = 1; model < count; ++model) {
+    progress.show("corners", static_cast<double>(model) / static_cast<double>(count));
+    if (!certificate.prove(model)) {
+      return fault(
+          "certify: no factorisation came out at a corner, so nothing is proven; expected "
+          "more seconds of --effort, or a smaller --box, to help");
+    }
+    box.take(model, certificate);
+  }
+  return {};
+}
+
 struct CertifyResult {
   const app::EvaluationResults* evaluation = nullptr;
   std::string cause;  ///< Why its points do not fit, if anybody knows.
@@ -350,7 +394,8 @@ void write_json(const CertifyResult& result, app::TextWriter& out) {
   out.text(", \"gap\": ").exact(result.gap());
   out.text(", \"cells\": ").integer(certificate.grid().cells);
   out.text(", \"multipliers\": ").integer(certificate.used_multipliers());
-  out.text(", \"nodes\": 0");
+  out.text(", \"nodes\": 0, \"corners\": ");
+  out.integer(result.proven.box != nullptr ? result.proven.box->models().size() : 1);
   out.text(", \"seconds\": ").fixed(result.seconds, 1);
   write_fit_json(*result.evaluation, out);
 }
@@ -397,6 +442,21 @@ void write_error_measure(const ModalModel& model, app::TextWriter& out) {
   }
 }
 
+void write_box(const BoxProof& box, app::TextWriter& out) {
+  const ParameterBox& half_width = box.half_width();
+  out.text("Box         S +- ").general(half_width.sensitivity, 7).text(" V/(m/s^2), f0 +- ");
+  out.general(half_width.natural_frequency_hz, 7).text(" Hz, beta +- ");
+  out.general(half_width.damping, 7);
+  out.text(box.gain_follows() ? ", the gain follows S\n" : ", the gain is fixed\n");
+}
+
+void write_best_corner(const BoxProof& box, app::TextWriter& out) {
+  const Accelerometer& device = box.device();
+  out.text("            at S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
+  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
+  out.line();
+}
+
 void write_text(const CertifyResult& result, app::TextWriter& out) {
   const ProvenEnergy& proven = result.proven;
   const EnergyCertificate& certificate = *proven.certificate;
@@ -408,6 +468,9 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
   out.line();
   write_warnings(result, out);
+  if (proven.box != nullptr) {
+    write_box(*proven.box, out);
+  }
   out.text("Filter      Butterworth, order ")
       .integer(static_cast<std::uint64_t>(filter.relative_degree));
   out.text(", cutoff ").general(filter.band_hz, 7).text(" Hz, gain ").general(filter.gain, 7);
@@ -417,8 +480,13 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.line();
   out.text("Reached     E  = ").general(proven.energy_v2s, 7).text(" V^2 s, by a signal with ");
   out.integer(switches).text(switches == 1 ? " switch\n" : " switches\n");
+  if (proven.box != nullptr) {
+    write_best_corner(*proven.box, out);
+  }
   out.text("Proven      E <= ").general(rounded_up(result.bound_v2s(), 6), 7);
-  out.text(" V^2 s for every such signal\nGap         ").fixed(100.0 * result.gap(), 3);
+  out.text(" V^2 s for every such signal");
+  out.text(proven.box != nullptr ? ", and every device in the box" : "");
+  out.text("\nGap         ").fixed(100.0 * result.gap(), 3);
   out.text(" % of the energy reached\nRMS error   ");
   out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
   out.general(rounded_up(std::sqrt(result.bound_v2s() / duration_s), 4), 5).text(" V\n");
@@ -433,6 +501,13 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.text("The proof has ").integer(certificate.grid().cells).text(" cells and ");
   out.integer(certificate.used_multipliers()).text(" multipliers, found in ");
   out.fixed(result.seconds, 1).text(" s of the processor.\n");
+  if (proven.box != nullptr) {
+    const double corners = proven.box->corner_bound();
+    out.text("It holds at ").integer(proven.box->models().size()).text(" corners, by ");
+    out.fixed(100.0 * (corners / proven.box->maximum().energy - 1.0), 3);
+    out.text(" %; what may lie between them is ");
+    out.fixed(100.0 * (proven.box->bound() / corners - 1.0), 4).text(" % more.\n");
+  }
   if (result.bound_v2s() < proven.bound_v2s()) {
     out.text("The bound is that of emax report; the certificate proves E <= ");
     out.general(rounded_up(proven.bound_v2s(), 6), 7).text(" V^2 s. More --effort\nhelps.\n");
@@ -476,9 +551,21 @@ Problem run_certify(Span<const std::string_view> arguments) {
         "--time: the impulse response has one sign within T, so the constant signal is the worst "
         "one and nothing is left to prove; expected a longer time, or emax report");
   }
+  const double duration_s = evaluation.maximum.signal.duration_s();
+  std::unique_ptr<BoxProof> box;
+  if (options.box.is_wanted) {
+    box = std::make_unique<BoxProof>();
+    if ((problem = box->start(evaluation, options.box, most_corners(options)))) {
+      return problem;
+    }
+  }
+  const MaximumEnergy& maximum = box ? box->maximum() : evaluation.maximum;
+  const Span<const ModalModel> models = box ? box->models() : Span<const ModalModel>(&model, 1);
   Work work;
-  problem = work.start(model, evaluation.maximum.signal, options.effort_s);
-  if (problem || (problem = prove(work.certificate(), evaluation.maximum.energy, options))) {
+  problem = work.start(models, maximum.signal, options.effort_s);
+  problem = problem ? problem : prove(work.certificate(), maximum.energy, options);
+  problem = problem || !box ? problem : prove_corners(work.certificate(), *box);
+  if (problem) {
     return problem;
   }
   CertifyResult result;
@@ -486,13 +573,14 @@ Problem run_certify(Span<const std::string_view> arguments) {
   if (evaluation.source == app::Source::kPoints) {
     result.cause = cause_of(evaluation.fit, imported.names_phase_unit);
   }
+  result.proven.box = box.get();
   result.proven.model = &model;
   result.proven.certificate = &work.certificate();
-  result.proven.signal = &evaluation.maximum.signal;
+  result.proven.signal = &maximum.signal;
   result.proven.limit_mps2 = evaluation.limit_mps2;
-  result.proven.energy_v2s = evaluation.energy_v2s();
+  result.proven.energy_v2s = evaluation.a2() * maximum.energy;
   result.quick_bound_v2s = result.proven.limit_mps2 * result.proven.limit_mps2 *
-                           quick_bound(model, evaluation.maximum.signal.duration_s());
+                           (box ? quick_bound(*box, duration_s) : quick_bound(model, duration_s));
   result.seconds = spent_s();
   result.certificate_path = options.out_path;
   // What has been proven is printed, whatever becomes of the file.
@@ -515,7 +603,7 @@ std::string help_on_certify() {
 
 Proves how far the maximum energy of emax report can be from the truth: a bound
 of the energy, by any criterion, that no signal within +-a on [0, T] exceeds,
-whatever its shape. The longer it runs the tighter the bound; Ctrl-C ends it
+whatever its shape; with --box for every device within its uncertainties. The longer it runs the tighter the bound; Ctrl-C ends it
 early with what is proven by then.
 )" + help_on(syntax_of(options).options);
 }

@@ -27,7 +27,7 @@ class Grid {
     while (!bounds.done()) {
       bounds.step();
     }
-    fill_costs(bounds, 1.0, grid);
+    raise_costs(bounds, 1.0, grid);
     matrix.resize(grid.cells * grid.cells);
     std::vector<double> scratch(4 * kMaxModes * grid.cells);
     fill_certificate_phi(model, grid, {matrix.data(), matrix.size()},

@@ -157,6 +157,40 @@ TEST(EnergyCertificate, HoldsForShortAndLongEffort) {
   EXPECT_LT(before, 1.005 * test::kBestEnergy2ms);
 }
 
+// The multipliers of the first serve the second, with costs that cover both.
+TEST(EnergyCertificate, ProvesSeveralDevicesByTheSameMultipliers) {
+  ModalModel models[2] = {};
+  const Accelerometer devices[] = {{1.037, 4073.0, 0.3182}, {1.04, 4067.0, 0.3178}};
+  const double energies[] = {test::kBestEnergy2ms, 0.0051346992};  // Of the refined switch at each.
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(models[i].set(devices[i], {10, 1000.0, 1.037}, Criterion::kIntegralSquareError),
+              Status::kOk);
+  }
+  const double duration_s = 2e-3;
+  const double switches_s[] = {1.0475e-3};
+  Work work(110, mesh_intervals(models[1], duration_s));
+  EnergyCertificate& certificate = work.certificate();
+  ASSERT_EQ(certificate.start({models, 2}, duration_s, 90, switches_s, work.workspace()),
+            Status::kOk);
+  while (!certificate.ready()) {
+    certificate.prepare();
+  }
+  improve(certificate, 30, 600);
+  ASSERT_TRUE(certificate.prove());
+  EXPECT_GT(kPaperA2 * certificate.bound(), energies[0]);
+  EXPECT_LT(kPaperA2 * certificate.bound(), 1.005 * energies[0]);
+  const std::vector<std::int32_t> first(certificate.duals().begin(), certificate.duals().end());
+  const double bound = certificate.bound();
+  ASSERT_TRUE(certificate.prove(1));
+  EXPECT_GT(kPaperA2 * certificate.bound(), energies[1]);
+  EXPECT_LT(kPaperA2 * certificate.bound(), 1.005 * energies[1]);
+  ASSERT_TRUE(certificate.prove(0));  // And back.
+  EXPECT_NEAR(certificate.bound() / bound, 1.0, 1e-6);
+  EXPECT_EQ(
+      certificate.start(Span<const ModalModel>(), duration_s, 90, switches_s, work.workspace()),
+      Status::kInvalidArgument);
+}
+
 // The proof itself, built anew from multipliers and y, with long double and no margin.
 TEST(EnergyCertificate, LeavesASemidefiniteMatrix) {
   const std::size_t cells = 24;

@@ -57,16 +57,28 @@ Status lay_out_cells(double duration_s, std::size_t wanted, Span<const double> s
 /// cost too much.
 std::size_t coarsest_certificate(const ModalModel& model, double duration_s) noexcept;
 
-/// Fills in what cells cost, from bounds that are done.
+/// Raises what cells cost to what bounds that are done ask for; no cost becomes lower, so that
+/// costs can cover several models.
 ///
 /// @param[in] margin Every cost is taken this many times as large, 1 or a little more, so that a
 ///   check with bounds of its own, found in another way, can confirm it.
-void fill_costs(const KernelBounds& bounds, double margin, CertificateGrid& grid) noexcept;
+void raise_costs(const KernelBounds& bounds, double margin, CertificateGrid& grid) noexcept;
 
 /// Phi of the cells, row by row, symmetric: cells^2 numbers.
 ///
 /// @param scratch At least 4 kMaxModes cells numbers.
 void fill_certificate_phi(const ModalModel& model, const CertificateGrid& grid, Span<double> matrix,
                           Span<double> scratch) noexcept;
+
+/// What the rounding of each row of Phi, summed over its elements, is relative to: the sizes of all
+/// terms of their closed forms. `kCertificateRounding` of it covers a check in ball arithmetic too.
+///
+/// @param[out] sizes One for each cell.
+/// @param scratch As above.
+void fill_row_sizes(const ModalModel& model, const CertificateGrid& grid, Span<double> sizes,
+                    Span<double> scratch) noexcept;
+
+/// A check has been seen to need 17 to 66 times 2^-53.
+inline constexpr double kCertificateRounding = 128.0 * 0x1p-53;
 
 }  // namespace emax

@@ -74,6 +74,10 @@ constexpr std::size_t certificate_numbers(std::size_t cells, std::size_t interva
 ///     while (there is time) certificate.polish(progress);
 ///     certificate.prove();
 ///
+/// Several models may share grid, costs and multipliers: the corners of a box of devices. Costs are
+/// then the largest of all, multipliers are found for the first one, and each has a y of its own,
+/// by `prove(model)`.
+///
 /// The multipliers come from an augmented Lagrangian of the relaxation X = V V' with vectors of
 /// length 1 or less (Burer and Monteiro), minimised over V by L-BFGS; each round takes in the most
 /// violated inequalities. Gradient steps on the multipliers (Adam), between sweeps of the mixing
@@ -90,6 +94,10 @@ class EnergyCertificate {
   Status start(const ModalModel& model, double duration_s, std::size_t cells,
                Span<const double> switches_s, const CertificateWorkspace& workspace) noexcept;
 
+  /// The same for several models, at least one. @returns As above, for whichever fails.
+  Status start(Span<const ModalModel> models, double duration_s, std::size_t cells,
+               Span<const double> switches_s, const CertificateWorkspace& workspace) noexcept;
+
   /// For the largest v' M v of numbers within +-1 instead: no grid, no costs, and ready at once.
   ///
   /// @param[in] matrix M, symmetric, row by row; copied.
@@ -100,7 +108,10 @@ class EnergyCertificate {
   /// Works on the bounds of the kernel, and then on the matrix.
   void prepare() noexcept;
   bool ready() const noexcept { return ready_; }
-  double preparation() const noexcept { return kernel_.progress(); }
+  double preparation() const noexcept {
+    return (static_cast<double>(prepared_) + kernel_.progress()) /
+           static_cast<double>(models_.size() + 1);
+  }
 
   /// One round of the augmented Lagrangian: up to 40 times cells^2 times some 20 ns, and a look at
   /// all triangles.
@@ -119,10 +130,14 @@ class EnergyCertificate {
   /// What the relaxation comes to with these multipliers; an estimate, not a bound.
   double estimate() const noexcept { return estimate_; }
 
-  /// Fixes the multipliers, finds y, and so a bound.
+  /// Fixes the multipliers, finds y, and so a bound, for the first model.
   ///
   /// @returns False if no factorisation came out, which leaves no bound.
   bool prove() noexcept;
+
+  /// The same for another model; after `prove()`, with the multipliers fixed there. `bound()` and
+  /// `duals()` are then those of this model.
+  bool prove(std::size_t model) noexcept;
 
   /// The bound, for a = 1; after `prove()`.
   double bound() const noexcept { return bound_; }
@@ -155,6 +170,8 @@ class EnergyCertificate {
   Status take_workspace(const CertificateWorkspace& workspace, std::size_t intervals) noexcept;
   void lay_out_memory() noexcept;
   void begin() noexcept;
+  void fill_phi(const ModalModel& model, double scale) noexcept;
+  bool find_bound() noexcept;
   bool add_multiplier(std::size_t i, std::size_t j, std::size_t k, std::size_t kind) noexcept;
   void forget_unused_multipliers() noexcept;
   void apply(const TriangleMultiplier& multiplier, double amount) noexcept;
@@ -183,7 +200,8 @@ class EnergyCertificate {
   bool set_duals(double raise) noexcept;
   bool is_semidefinite() noexcept;
 
-  const ModalModel* model_ = nullptr;
+  Span<const ModalModel> models_;
+  std::size_t prepared_ = 0;  // Models whose costs are known.
   CertificateWorkspace memory_ = {};
   KernelBounds kernel_ = {};
   CertificateGrid grid_ = {};
@@ -199,6 +217,8 @@ class EnergyCertificate {
   double* next_gradient_ = nullptr;
   double* direction_ = nullptr;
   double* dual_ = nullptr;
+  double* margins_ = nullptr;  // Left on each diagonal element for rounding.
+  double* spare_ = nullptr;
   double unit_ = 0.0;
   double scale_ = 0.0;  // Energy of 1 in the scaled matrix.
   double constant_ = 0.0;
