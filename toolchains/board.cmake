@@ -10,6 +10,8 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   CLOCK_HZ <n>           What the board's clock counts: macro EMAX_BOARD_CLOCK_HZ.
 #   INTERRUPTS <n>         How many numbers its interrupts have: macro EMAX_BOARD_INTERRUPTS.
 #   SOURCES <file>...      Startup and drivers.
+#   PRODUCT <file>         Makes what the board runs where that is no image with startup and memory map: nothing of
+#                          common/images.cmake is then made, and of the four above only CORE is needed.
 #   INCLUDES <folder>...   Their headers.
 #   SIMULATED_BENCH        The analog side is hal/sim, and about() tells what that was built from.
 #   WATCHDOG               It has one.
@@ -31,14 +33,18 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   SLOW_TEST_S <s>        What of these takes longer is left out; slow_tests.txt in the board's folder lists it.
 function(emax_declare_board)
   set(flags SIMULATED_BENCH WATCHDOG WITHOUT_LOOPBACK SEMIHOSTING TELNET_BREAK)
-  set(values CORE CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
+  set(values CORE PRODUCT CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
   set(lists SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "${flags}" "${values}" "${lists}")
   set(file ${EMAX_BOARD_FOLDER}/board.cmake)
   if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
     message(FATAL_ERROR "${file}: unknown, or without a value: ${arg_UNPARSED_ARGUMENTS} ${arg_KEYWORDS_MISSING_VALUES}")
   endif()
-  foreach(keyword IN ITEMS CORE CLOCK_HZ INTERRUPTS SOURCES)
+  set(needed CORE)
+  if(NOT arg_PRODUCT)
+    list(APPEND needed CLOCK_HZ INTERRUPTS SOURCES)
+  endif()
+  foreach(keyword IN LISTS needed)
     if(NOT arg_${keyword})
       message(FATAL_ERROR "${file} does not declare ${keyword}")
     endif()
@@ -46,7 +52,7 @@ function(emax_declare_board)
   emax_demand_with(RUNNER SEMIHOSTING)
   emax_demand_with(GOOGLETEST_MEMORY RUNNER SLOW_TEST_S)
   emax_demand_with(COUNTER RUNNER SIMULATED_BENCH INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ)
-  foreach(keyword IN ITEMS SOURCES INCLUDES COUNTER GOOGLETEST_MEMORY)
+  foreach(keyword IN ITEMS SOURCES PRODUCT INCLUDES COUNTER GOOGLETEST_MEMORY)
     set(files ${arg_${keyword}})
     set(arg_${keyword} "")
     foreach(file IN LISTS files)

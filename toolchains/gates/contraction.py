@@ -2,7 +2,7 @@
 
 usage: contraction.py (--objdump OBJDUMP | --tree TREE) FILE...
 
-With --tree the files are in a build tree, which knows its objdump. Prints one line for each function that has such an instruction (x86, Arm, RISC-V) and exits with 1 if there is one.
+With --tree the files are in a build tree, which knows its objdump. Prints one line for each function that has such an instruction (x86, Arm, RISC-V, WebAssembly) and exits with 1 if there is one.
 """
 
 import argparse
@@ -18,6 +18,7 @@ INSTRUCTION = re.compile(r"\s*[0-9a-f]+:\s+([a-z][\w.]*)")
 CONDITION = r"(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)?"
 FUSED = re.compile(
     r"vfn?m(add|sub|addsub|subadd)\d+[ps][sdh]|fn?m(add|sub)(\.[sdh])?|fml[as]" rf"|vfn?m[as]{CONDITION}(\.f\d+)?"
+    r"|f\d+x\d+\.(relaxed_n?madd|qfm[as])"
 )
 
 

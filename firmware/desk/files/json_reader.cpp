@@ -14,8 +14,6 @@ namespace emax::desk {
 
 namespace {
 
-const JsonValue kNullValue;
-
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 }  // namespace
@@ -26,7 +24,8 @@ const JsonValue& JsonValue::operator[](std::string_view name) const noexcept {
       return member.second;
     }
   }
-  return kNullValue;
+  static const JsonValue null_value;
+  return null_value;
 }
 
 /// Each function takes what it is named after, from `at_` on, or says what is wrong there.

@@ -18,7 +18,8 @@ double rounded_up(double value, int decimals) {
     return value;
   }
   // It has been rounded down, by at most half of its last digit.
-  const int exponent = std::stoi(shown.substr(shown.find('e') + 1));
+  const Span<const char> digits(shown.data(), shown.size());
+  const int exponent = static_cast<int>(parse_decimal(digits.from(shown.find('e') + 1)).value);
   return value + std::pow(10.0, exponent - decimals);
 }
 
