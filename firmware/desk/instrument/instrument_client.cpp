@@ -301,7 +301,7 @@ Problem InstrumentClient::measure(ConsoleProgress& progress) {
 Problem InstrumentClient::keep_points(std::size_t count) {
   while (early_points_.size() < count && count <= kMaxPoints) {
     std::string line;
-    if (Problem problem = ask(":FETC:POIN? " + std::to_string(early_points_.size() + 1), line)) {
+    if (Problem problem = ask(":FETC:FRES:POIN? " + std::to_string(early_points_.size() + 1), line)) {
       return problem;
     }
     EarlyPoint point;
@@ -309,7 +309,7 @@ Problem InstrumentClient::keep_points(std::size_t count) {
     point.frequency_hz = std::strtod(line.c_str(), &rest);
     for (double* const number : {&point.amplitude, &point.phase_deg}) {
       if (*rest != ',') {
-        return fault("--instrument: " + printable(port_.name()) + ": FETC:POIN? answers \"" +
+        return fault("--instrument: " + printable(port_.name()) + ": FETC:FRES:POIN? answers \"" +
                      printable(line.substr(0, kShown)) + "\"; expected an emax of this version");
       }
       *number = std::strtod(rest + 1, &rest);

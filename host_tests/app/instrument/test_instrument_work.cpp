@@ -440,6 +440,28 @@ TEST(InstrumentSweep, KeepsPointsOnAbort) {
   EXPECT_EQ(i.errors(), "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"\n");
 }
 
+TEST(InstrumentSweep, ShowsItsPointsWhileItRuns) {
+  InstrumentBench i;
+  (void)i.ask("INIT");
+  for (int n = 0; n < 1'000'000 && i.ask("TRAC:FRES:POIN?") < "2"; ++n) {
+  }
+  ASSERT_TRUE(i.instrument->is_sweeping());
+  const std::vector<double> second = i.numbers("FETC:FRES:POIN? 2");
+  EXPECT_EQ(i.ask("FETC:FRES:POIN? 5"), "");
+  EXPECT_EQ(i.ask("FETC:FRES:POIN? 0"), "");
+  EXPECT_EQ(i.errors().substr(0, 66),
+            "-230,\"Data corrupt or stale;no such point: TRAC:FRES:POIN?\"\n-222,\"");
+  EXPECT_TRUE(i.instrument->is_sweeping()) << "nothing of it waits or disturbs";
+  ASSERT_TRUE(i.finish());
+  const std::vector<double> all = i.numbers("FETC:FRES?");
+  ASSERT_EQ(all.size(), 26U);
+  ASSERT_EQ(second.size(), 5U);
+  for (const std::size_t field : {0U, 1U, 2U}) {
+    EXPECT_EQ(second[field], all[6 + field]) << "only the uncertainties come at the end";
+  }
+  EXPECT_EQ(i.numbers("FETC:FRES:POIN? 2"), std::vector<double>(&all[6], &all[11]));
+}
+
 TEST(InstrumentSweep, FindsTheDeviceOfTheBench) {
   InstrumentBench i;
   EXPECT_EQ(i.ask("INIT;*OPC?"), "1");

@@ -88,20 +88,26 @@ void InstrumentCommands::fetch(Instrument& i, Call& call) noexcept {
   }
 }
 
-void InstrumentCommands::fetch_point(Instrument& i, Call& call) noexcept {
-  const auto count = static_cast<std::int64_t>(point_count(i));
-  std::int64_t number = 0;
-  if (call.integer({1, count, 1}, number)) {
-    answer_response(point_at(i, static_cast<std::size_t>(number - 1)), call.answer());
-  }
-}
-
 void InstrumentCommands::fetch_trace(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
     answer_point(i, call.item(), kCoverageFactor, call.answer());
     return;
   }
   call.answer_items(points_to_fetch(i, call));
+}
+
+// Never waits: who watches a sweep grow asks for one point after the other.
+void InstrumentCommands::fetch_point(Instrument& i, Call& call) noexcept {
+  std::int64_t number = 0;
+  if (!call.integer({1, kMaxPoints, 1}, number)) {
+    return;
+  }
+  const auto index = static_cast<std::size_t>(number - 1);
+  if (index >= point_count(i)) {
+    call.fail(ErrorCode::kDataCorruptOrStale, "no such point: TRAC:FRES:POIN?");
+    return;
+  }
+  answer_point(i, index, 1.0, call.answer());
 }
 
 // As SCPI-99 has it: ABORt, INITiate, FETCh?.

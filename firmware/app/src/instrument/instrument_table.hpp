@@ -84,7 +84,7 @@ inline constexpr scpi::Command<Instrument> kWork[] = {
     {"ABORt", kSet, "", "Ends what runs, drive at zero; overtakes commands that wait", kImmediate, C::abort},
 
     {"FETCh:FRESponse", kQuery, "", "n, then f,A,phi,uA,uphi of each point: Hz, V/(m/s2), degrees, standard u with the common part", kPlain, C::fetch},
-    {"FETCh:POINt", kQuery, "<n>", "f,A,phi of the n-th point, also while the sweep goes on", kPlain, C::fetch_point},
+    {"FETCh:FRESponse:POINt", kQuery, "<i>", "The point i of TRAC:FRES:POIN?: f,A,phi,uA,uphi; while the sweep runs, too, then without u", kPlain, C::fetch_point},
     {"FETCh:TRACe", kQuery, "", "The points as TRACe takes them: expanded U (k = 2), in U(A) the common part of CALC:REF:UNC?", kPlain, C::fetch_trace},
     {"FETCh:JSON", kQuery, "", "What was measured and computed, as results.json, as a block", kPlain, C::fetch_json},
     {"READ:FRESponse", kQuery, "", "ABORt, INITiate and FETCh:FRESponse? in one", kPlain, C::read},
