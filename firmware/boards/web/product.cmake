@@ -71,3 +71,16 @@ target_include_directories(emax_${EMAX_BOARD_NAME}_desk PRIVATE ${PROJECT_SOURCE
 target_link_libraries(emax_${EMAX_BOARD_NAME}_desk PRIVATE emax_app)
 target_compile_options(emax_${EMAX_BOARD_NAME}_desk PRIVATE
   -Os -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -ffunction-sections -fdata-sections)
+
+# The page.
+find_program(EMAX_WEB_PYTHON python3 REQUIRED)
+set(page ${PROJECT_BINARY_DIR}/emax.html)
+file(GLOB parts CONFIGURE_DEPENDS ${EMAX_BOARD_FOLDER}/page/*)
+add_custom_command(
+  OUTPUT ${page}
+  COMMAND ${EMAX_WEB_PYTHON} -B ${EMAX_BOARD_FOLDER}/make_page.py ${EMAX_BOARD_FOLDER}/page
+    $<TARGET_FILE:emax_${EMAX_BOARD_NAME}> $<TARGET_FILE:emax_${EMAX_BOARD_NAME}_desk> ${page}
+  DEPENDS ${EMAX_BOARD_FOLDER}/make_page.py ${parts} emax_${EMAX_BOARD_NAME} emax_${EMAX_BOARD_NAME}_desk
+  COMMENT "The page emax.html"
+  VERBATIM)
+add_custom_target(page ALL DEPENDS ${page})

@@ -461,6 +461,21 @@ void hand_back(InstrumentBench& i, const std::string& points, const std::string&
   }
 }
 
+// A phase that nobody measured is the one of a table of magnitudes, to the last bit, whatever
+// degrees its uncertainty comes in.
+TEST(Instrument, TakesAnUnknownPhaseAsItIs) {
+  InstrumentBench i;
+  (void)i.ask("TRAC:FRES:DATA 100,1,0,0.01,114591559.02616465");
+  (void)i.ask("TRAC:FRES:DATA 200,1,0,0.01,2e8");
+  (void)i.ask("TRAC:FRES:DATA 300,1,0,0.01,360");
+  EXPECT_EQ(i.errors(), "");
+  const Span<const ResponsePoint> points = i.instrument->sequencer().points().points();
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_EQ(points[0].u_phase_rad, kUnknownPhase_rad);
+  EXPECT_EQ(points[1].u_phase_rad, kUnknownPhase_rad);
+  EXPECT_DOUBLE_EQ(points[2].u_phase_rad, std::acos(-1.0));
+}
+
 // What FETCh:TRACe? answers, with CALC:REF:UNC?, is the same device again: the common part is not
 // taken for one that the number of points makes smaller.
 TEST(Instrument, TakesItsOwnPointsBack) {
@@ -595,6 +610,21 @@ TEST(Instrument, KeepsTheTimesOfTheTrend) {
   EXPECT_EQ(i.numbers("CALC:TREN?").size(), 4U);
   EXPECT_EQ(error_of(i, "CALC:TREN:TIME 1").substr(0, 4), "-221");
   EXPECT_EQ(i.ask("CALC:TREN:TIME?"), "1.0E-3,2.0E-3");
+}
+
+// As results.json has it: what points determine that were not measured here.
+TEST(Instrument, TellsInJsonWhatThePointsDetermine) {
+  InstrumentBench i;
+  const std::string all = "\"determined\": \"all\"";
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  const std::string points = i.ask("FETC:TRAC?");
+  (void)i.ask("CALC:IDEN?");
+  EXPECT_EQ(i.ask("FETC:JSON?").find(all), std::string::npos);
+  (void)i.ask("TRAC:FRES:CLE");
+  (void)i.ask("TRAC:FRES:DATA " + points);
+  (void)i.ask("CALC:IDEN?");
+  EXPECT_NE(i.ask("FETC:JSON?").find(all), std::string::npos);
+  EXPECT_EQ(i.errors(), "");
 }
 
 // The numbers are those of the other queries; what is not there is null.

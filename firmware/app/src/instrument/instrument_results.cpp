@@ -18,6 +18,8 @@ constexpr double kCoverageFactor = 2.0;
 constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = 1e300;
 constexpr double kMaxPhase_deg = 360.0;
+// An unknown phase comes in degrees, from which no double leads back to just its radians.
+constexpr double kNearlyUnknown_rad = 0.999999 * kUnknownPhase_rad;
 constexpr double kPercent = 100.0;
 constexpr std::int64_t kMaxRandom = 1'000'000;
 constexpr std::size_t kPointFields = 5;
@@ -235,6 +237,9 @@ const char* InstrumentCommands::add_point(FrequencyResponse& response,
   point.phase_rad = numbers[2] * kRadiansPerDegree;
   point.u_amplitude = numbers[3] / kCoverageFactor;
   point.u_phase_rad = numbers[4] / kCoverageFactor * kRadiansPerDegree;
+  if (point.u_phase_rad > kNearlyUnknown_rad) {
+    point.u_phase_rad = kUnknownPhase_rad;
+  }
   if (abs(numbers[2]) > kMaxPhase_deg) {
     return "phase: -360 to 360 degrees";
   }

@@ -713,6 +713,7 @@ void write_instrument_json(const InstrumentState& state, TextWriter& out) noexce
   write_sweep(state.measurement, json);
   if (state.has_model) {
     write_model(state.evaluation, context, json);
+    write_fit(state.evaluation, context, json);
   } else {
     json.null("model");
   }

@@ -1,0 +1,551 @@
+// The page: what somebody does, and what is shown.
+
+const element = (id) => document.getElementById(id);
+
+const STAGES = {sweep: 'sweeping', idle: 'done'};
+const MOST_TABLE_BYTES = 1 << 20;
+const MOST_LOG = 20000;
+const NOTHING = {labels: {device: '', serial: '', operator: '', date: '', note: ''}};
+
+class App {
+  constructor() {
+    this.keep = new Keep();
+    this.keep.onproblem = (text) => this.complain(text);
+    this.desk = new Desk();
+    this.device = null;
+    this.isBusy = false;
+    this.chosen = new Set();
+    this.listen();
+    this.showDevices();
+  }
+
+  listen() {
+    const on = (id, event, act) => element(id).addEventListener(event, (e) => {
+      e.preventDefault();
+      act(e);
+    });
+    on('connect-simulated', 'click', () => this.work(() => this.connectSimulated([0, 0, 0])));
+    on('connect-serial', 'click', () => this.work(() => this.connectSerial()));
+    on('simulated', 'submit', () => this.work(() => this.connectSimulated(['sim-s', 'sim-f0', 'sim-beta'].map((id) => Number(element(id).value)))));
+    on('defaults', 'click', () => this.work(() => this.restoreDefaults()));
+    on('sweep', 'click', () => this.work(() => this.sweep()));
+    on('model', 'submit', () => this.work(() => this.takeModel()));
+    on('abort', 'click', () => this.job?.stop());
+    on('again', 'click', () => this.work(() => this.again()));
+    on('print', 'click', () => this.print());
+    on('save-report', 'click', () => saveFile(fileName(this.device, 'report.txt'), 'text/plain', reportWithLabels(this.device)));
+    on('save-json', 'click', () => saveFile(fileName(this.device, 'results.json'), 'application/json', jsonWithLabels(this.device)));
+    on('save-csv', 'click', () => saveFile(fileName(this.device, 'points.csv'), 'text/csv', pointsCsv(this.device)));
+    on('compare', 'submit', () => this.work(() => this.compare()));
+    on('save-comparison', 'click', () => saveFile('comparison.csv', 'text/csv', this.comparisonCsv));
+    on('speak', 'submit', () => this.speak());
+    on('leave-run', 'click', () => {
+      history.replaceState(null, '', location.pathname + location.search);
+      location.reload();
+    });
+    element('files').addEventListener('change', (event) => {
+      const files = [...event.target.files];
+      event.target.value = '';
+      this.work(() => this.takeFiles(files));
+    });
+    for (const [key] of LABELS) {
+      element(`label-${key}`).addEventListener('change', () => this.relabel());
+    }
+    const drop = element('drop');
+    for (const event of ['dragenter', 'dragover']) {
+      drop.addEventListener(event, (e) => {
+        e.preventDefault();
+        drop.classList.add('over');
+      });
+    }
+    drop.addEventListener('dragleave', () => drop.classList.remove('over'));
+    // A file that misses the place must not take the page's.
+    window.addEventListener('dragover', (e) => e.preventDefault());
+    window.addEventListener('drop', (e) => {
+      e.preventDefault();
+      drop.classList.remove('over');
+      const files = [...(e.dataTransfer?.files ?? [])];
+      if (files.length > 0) {
+        this.work(() => this.takeFiles(files));
+      }
+    });
+    const hasSerial = Boolean(navigator.serial);
+    if (!hasSerial) {
+      element('connect-serial').hidden = true;
+      element('serial-hint').textContent = 'This browser has no Web Serial, so it cannot speak with a board; Chromium, Chrome and Edge can.';
+    }
+  }
+
+  // One thing at a time; what goes wrong is said.
+  async work(act) {
+    if (this.isBusy) {
+      this.complain('something else is running; stop it first, or wait');
+      return;
+    }
+    this.setBusy(true);
+    this.complain('');
+    try {
+      await act();
+    } catch (error) {
+      if (error.name !== 'NotFoundError') {  // Nobody chose a port.
+        this.complain(error.message);
+      }
+    }
+    this.setBusy(false);
+  }
+
+  setBusy(isBusy) {
+    this.isBusy = isBusy;
+    document.body.dataset.busy = isBusy ? 'yes' : 'no';
+    document.querySelectorAll('.starts').forEach((control) => {
+      control.disabled = isBusy;
+    });
+    element('work').hidden = !isBusy || !element('stage').textContent;
+  }
+
+  complain(text) {
+    const place = element('problem');
+    place.textContent = text;
+    place.hidden = text === '';
+  }
+
+  progress(percent, words) {
+    element('stage').textContent = words;
+    element('progress').value = percent;
+    element('work').hidden = words === '';
+  }
+
+  // The instrument
+
+  async begin() {
+    const now = this.keep.get('now') ?? {};
+    await this.connectSimulated(now.mounted ?? [0, 0, 0], now);
+  }
+
+  async connectSimulated(mounted, before = null) {
+    const kept = this.keep.get('store');
+    const port = await SimulatedPort.open(mounted, kept ? Uint8Array.from(atob(kept), (c) => c.charCodeAt(0)) : null);
+    port.onstore = (bytes) => this.keep.set('store', btoa(String.fromCharCode(...bytes)));
+    this.mounted = mounted;
+    await this.use(port, false);
+    const learnt = before?.settings;
+    if (learnt) {
+      await this.scpi.exchange(learnt);  // Of another version some may be refused; the rest is taken.
+      await this.showSettings();
+    }
+    const device = before?.device ? this.keep.get(`device.${before.device}`) : null;
+    if (device) {
+      await this.hand(device);
+      this.showDevice(device);
+    }
+    this.remember();
+  }
+
+  async connectSerial() {
+    await this.use(await SerialPort.open(), true);
+    this.remember();
+  }
+
+  async use(port, isSlow) {
+    const before = this.port;
+    this.port = null;
+    await before?.close();
+    port.onend = (reason) => this.ended(port, reason);
+    const scpi = new Scpi(port);
+    const job = new Job(scpi, isSlow);
+    try {
+      await scpi.tell('*CLS');
+      Object.assign(this, {port, scpi, job, isSlow, ...(await job.identify())});
+    } catch (error) {
+      await port.close();
+      element('connection').textContent = 'not connected';
+      throw error;
+    }
+    scpi.onwarning = (errors) => this.complain(errors.join('; '));
+    if (port.commands) {
+      this.commands = commandsOf(port.commands);
+      this.showCommands();
+      this.form = new SettingsForm(element('settings-list'), this.commands, (header, value) => this.change(header, value));
+    }
+    element('connection').textContent = `Connected: ${port.name}, ${this.identity}`;
+    document.body.dataset.simulated = this.isSimulated ? 'yes' : 'no';
+    await this.showSettings();
+  }
+
+  ended(port, reason) {
+    if (port === this.port) {
+      this.port = null;
+      element('connection').textContent = `Not connected: ${reason}. What was measured is kept; connect again.`;
+    }
+  }
+
+  // Settings
+
+  async showSettings() {
+    this.learnt = await this.scpi.ask('*LRN?');
+    this.form.show(this.learnt, (query) => this.scpi.ask(query));
+  }
+
+  async change(header, value) {
+    try {
+      await this.scpi.tell(`${header} ${value}`);
+    } catch (error) {
+      return error.message;
+    }
+    await this.showSettings();
+    this.remember();
+    return '';
+  }
+
+  async restoreDefaults() {
+    const device = this.device;
+    await this.scpi.tell('*RST');
+    await this.showSettings();
+    if (device) {
+      await this.hand(device);
+    }
+    this.remember();
+  }
+
+  remember() {
+    this.keep.set('now', {mounted: this.mounted, settings: this.learnt, device: this.device?.id ?? null});
+    this.markStale();
+  }
+
+  markStale() {
+    const isStale = Boolean(this.device?.json) && this.device.settings !== this.learnt;
+    element('again').textContent = isStale ? 'Settings have changed: evaluate again' : 'Evaluate again';
+  }
+
+  // Devices
+
+  newDevice(kind, name) {
+    const labels = {...NOTHING.labels};
+    LABELS.forEach(([key]) => {
+      labels[key] = element(`label-${key}`).value.trim();
+    });
+    const ids = this.keep.get('devices') ?? [];
+    const isTaken = ids.some((id) => this.keep.get(`device.${id}`)?.labels.device === labels.device);
+    if (!labels.device || isTaken || kind === 'table') {
+      labels.device = name;
+    }
+    const id = `${Date.now().toString(36)}${Math.floor(Math.random() * 1e6).toString(36)}`;
+    return {id, kind, labels, source: '', understanding: '', trace: '', reference: '0', model: '', json: '', report: '',
+      impulse: [], instrument: this.identity, isSimulated: false, settings: this.learnt};
+  }
+
+  // The device's points or parameters are the instrument's again.
+  async hand(device) {
+    if (device.trace) {
+      const lines = pointsOf(device.trace).map((point) => `TRAC:FRES:DATA ${point.join(',')}`);
+      await this.job.takeTable(device.lines ?? lines, device.reference);
+    } else if (device.model) {
+      await this.scpi.tell(`CALC:MOD ${device.model}`);
+    }
+  }
+
+  async takeFiles(files) {
+    const taken = [];
+    const problems = [];
+    for (const file of files) {
+      try {
+        taken.push(file.name.toLowerCase().endsWith('.json') ? await this.takeResults(file) : await this.takeTable(file));
+      } catch (error) {
+        problems.push(error.message);
+      }
+    }
+    this.progress(0, '');
+    if (taken.length > 1) {
+      element('devices').scrollIntoView();
+    }
+    if (problems.length > 0) {
+      throw new Error(problems.join(' — '));
+    }
+  }
+
+  async takeTable(file) {
+    if (file.size > MOST_TABLE_BYTES) {
+      throw new Error(`${file.name}: larger than 1 MiB; expected a table of at most 1024 points`);
+    }
+    const options = {
+      uncertainty: element('table-uncertainty').value.trim(),
+      units: element('table-units').value.trim(),
+      delay: element('table-delay').value.trim(),
+      isInverted: element('table-invert').checked,
+      reference: element('table-reference').value.trim(),
+    };
+    this.progress(0, `reading ${file.name}`);
+    const {understanding, lines} = await this.desk.readTable(file.name, new Uint8Array(await file.arrayBuffer()), options);
+    const device = this.newDevice('table', file.name.replace(/\.[^.]*$/, ''));
+    Object.assign(device, {source: file.name, understanding, lines, reference: options.reference || '0'});
+    await this.job.takeTable(lines, device.reference);
+    device.trace = lines.map((line) => line.slice(line.indexOf(' ') + 1)).join(',');
+    this.putDevice(device);
+    await this.evaluate(device);
+    return device;
+  }
+
+  // A results.json of the program or of this page, to compare with.
+  async takeResults(file) {
+    const json = await file.text();
+    let results = null;
+    try {
+      results = JSON.parse(json);
+    } catch (error) {
+      throw new Error(`${file.name}: ${error.message}; expected a results.json of emax`);
+    }
+    if (!results?.version || !results?.model) {
+      throw new Error(`${file.name}: this is no results.json of emax`);
+    }
+    const device = this.newDevice('results', results.labels?.device || file.name.replace(/\.[^.]*$/, ''));
+    LABELS.slice(1).forEach(([key]) => {
+      device.labels[key] = results.labels?.[key] ?? '';
+    });
+    Object.assign(device, {source: file.name, json, instrument: ''});
+    this.putDevice(device);
+    return device;
+  }
+
+  async takeModel() {
+    const values = ['s', 'f0', 'beta', 'us', 'uf0', 'ubeta'].map((id) => element(`model-${id}`).value.trim());
+    const device = this.newDevice('model', 'Device by its parameters');
+    device.model = values.slice(3).every((value) => value === '') ? values.slice(0, 3).join(',') : values.join(',');
+    device.source = 'parameters as given';
+    await this.scpi.tell(`CALC:MOD ${device.model}`);
+    this.putDevice(device);
+    await this.evaluate(device);
+  }
+
+  async sweep() {
+    const device = this.newDevice('sweep', `Sweep of ${new Date().toLocaleString()}`);
+    Object.assign(device, {source: 'sweep', isSimulated: this.isSimulated});
+    const points = [];
+    let plot = null;
+    element('growing').replaceChildren();
+    this.job.isStopped = false;
+    let problems = [];
+    let broken = null;
+    try {
+      problems = await this.job.sweep(
+        (percent, stage) => this.progress(percent, `${STAGES[stage] ?? stage}, ${points.length} points`),
+        (point) => {
+          points.push(point);
+          // Kept as it grows: a closed page or a pulled plug loses nothing.
+          device.trace = points.map(([f, a, phi, ua, uphi]) => [f, a, phi, 2 * ua, 2 * uphi].join(',')).join(',');
+          device.isPartial = true;
+          this.keep.put(device);
+          if (points.length > 1) {
+            plot?.figure.remove();
+            plot = new Plot(element('growing'), responsePicture(points.map((p) => [...p.slice(0, 3), 2 * p[3], 2 * p[4]]), null));
+          }
+        });
+      Object.assign(device, await this.job.points());
+    } catch (error) {
+      broken = error;
+    }
+    element('growing').replaceChildren();
+    device.isPartial = Boolean(broken);
+    if (points.length > 0 || device.trace) {
+      this.putDevice(device);
+    }
+    this.progress(0, '');
+    if (broken) {
+      throw broken;
+    }
+    const isComplete = problems.length === 0 && !this.job.isStopped;
+    if (!isComplete) {
+      const words = this.job.isStopped ? 'stopped; the drive is at zero' : problems.join('; ');
+      this.complain(`${words}. ${points.length} points were measured and are kept.`);
+    }
+    if (isComplete) {
+      await this.evaluate(device);
+    }
+  }
+
+  async again() {
+    await this.hand(this.device);
+    this.device.settings = this.learnt;
+    await this.evaluate(this.device);
+  }
+
+  async evaluate(device) {
+    this.job.isStopped = false;
+    const problems = await this.job.evaluate((percent, stage) => this.progress(percent, `computing: ${stage}`));
+    if (this.job.isStopped) {
+      this.progress(0, '');
+      throw new Error('stopped; the points are kept');
+    }
+    this.progress(100, 'fetching the results');
+    try {
+      Object.assign(device, await this.job.results());
+    } catch (error) {
+      problems.push(error.message);
+    }
+    device.settings = this.learnt;
+    this.progress(0, '');
+    this.putDevice(device);
+    this.remember();
+    if (problems.length > 0) {
+      throw new Error(`${device.labels.device}: ${[...new Set(problems)].join('; ')}`);
+    }
+  }
+
+  putDevice(device) {
+    this.keep.put(device);
+    this.chosen.add(device.id);
+    this.showDevice(device);
+    this.showDevices();
+    this.remember();
+  }
+
+  showDevice(device) {
+    this.device = device;
+    LABELS.forEach(([key]) => {
+      element(`label-${key}`).value = device.labels[key] ?? '';
+    });
+    setCertificate(element('certificate'), device);
+    element('result').hidden = false;
+    element('save-report').hidden = !device.report;
+    element('save-json').hidden = !device.json;
+    element('save-csv').hidden = !device.trace;
+    element('again').hidden = !device.trace && !device.model;
+    document.title = `${device.labels.device} - emax`;
+    this.markStale();
+  }
+
+  relabel() {
+    if (!this.device) {
+      return;
+    }
+    LABELS.forEach(([key]) => {
+      this.device.labels[key] = element(`label-${key}`).value.trim();
+    });
+    this.keep.put(this.device);
+    this.showDevice(this.device);
+    this.showDevices();
+  }
+
+  showDevices() {
+    const devices = this.keep.devices();
+    element('no-devices').hidden = devices.length > 0;
+    element('compare').hidden = devices.length === 0;
+    const rows = devices.map((device) => {
+      const choose = document.createElement('input');
+      choose.type = 'checkbox';
+      choose.checked = this.chosen.has(device.id) && Boolean(device.json);
+      choose.disabled = !device.json;
+      choose.setAttribute('aria-label', `compare ${device.labels.device}`);
+      choose.addEventListener('change', () => (choose.checked ? this.chosen.add(device.id) : this.chosen.delete(device.id)));
+      const figures = device.report ? figuresOf(device.report)?.rows[0] : null;
+      return [choose, device.labels.device, device.labels.serial, figures ? `${figures[1]} ± ${figures[2]}` : '–', device.source,
+        this.makeButton('Show', device, () => {
+          this.showDevice(device);
+          this.work(() => this.hand(device));
+          this.remember();
+          element('result').focus();
+        }), this.makeButton('Delete', device, () => this.delete(device))];
+    });
+    element('device-list').replaceChildren(makeTable(['', 'Device', 'Serial', 'in band, % of S a', 'from', '', ''], rows));
+  }
+
+  makeButton(text, device, act) {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = text;
+    button.setAttribute('aria-label', `${text} ${device.labels.device}`);
+    button.addEventListener('click', act);
+    return button;
+  }
+
+  delete(device) {
+    if (!window.confirm(`Delete "${device.labels.device}" from this browser? Its points and results are then gone.`)) {
+      return;
+    }
+    this.keep.drop(device.id);
+    this.chosen.delete(device.id);
+    if (this.device?.id === device.id) {
+      this.device = null;
+      element('result').hidden = true;
+    }
+    this.showDevices();
+    this.remember();
+  }
+
+  async compare() {
+    const devices = this.keep.devices().filter((device) => this.chosen.has(device.id) && device.json)
+      .map((device) => ({name: device.labels.device, json: jsonWithLabels(device)}));
+    if (devices.length < 2) {
+      throw new Error('choose two devices or more');
+    }
+    // The names of files have to differ; those of devices need not.
+    devices.forEach((device, i) => {
+      if (devices.findIndex((other) => other.name === device.name) !== i) {
+        device.name += ` (${i + 1})`;
+      }
+    });
+    const by = element('compare-by').value;
+    const text = await this.desk.compare(by, 'text', devices);
+    const {devices: ranked, ranked_by: rankedBy} = JSON.parse(await this.desk.compare(by, 'json', devices));
+    this.comparisonCsv = await this.desk.compare(by, 'csv', devices);
+    const place = element('comparison');
+    place.hidden = false;
+    place.replaceChildren();
+    const unit = rankedBy === 'energy' ? 'V² s' : '% of S a';
+    const rows = ranked.map((device) => ({name: [device.device ?? device.file, device.serial].filter(Boolean).join(' '), value: device.value,
+      low: device.interval?.[0] ?? null, high: device.interval?.[1] ?? null, bound: device.bound ?? null}));
+    const order = addTo(place, 'ol', 'ranking');
+    ranked.forEach((device, i) => {
+      const rank = device.rank_best === device.rank_worst ? `${device.rank_best}` : `${device.rank_best}–${device.rank_worst}`;
+      addTo(order, 'li').textContent = `${rank}: ${rows[i].name}, ${shown(device.value)} ${unit}`;
+    });
+    drawRanking(addTo(place, 'div', 'plot'), rows, unit);
+    const pre = addTo(place, 'pre', 'report');
+    pre.tabIndex = 0;
+    pre.setAttribute('aria-label', 'comparison');
+    pre.textContent = text;
+    element('save-comparison').hidden = false;
+    place.focus();
+  }
+
+  print() {
+    const details = document.querySelector('#certificate .whole');
+    const was = details?.open;
+    if (details) {
+      details.open = true;
+    }
+    window.print();
+    if (details) {
+      details.open = was;
+    }
+  }
+
+  // The console
+
+  showCommands() {
+    const rows = this.commands.map(({pattern, forms, parameters, words}) => [pattern, forms, parameters, words]);
+    element('commands').replaceChildren(makeTable(['command', 'forms', 'parameters', ''], rows));
+  }
+
+  async speak() {
+    const line = element('line').value.trim();
+    if (!line) {
+      return;
+    }
+    element('line').value = '';
+    this.log(`> ${line}`);
+    try {
+      const {answers, errors} = await this.scpi.exchange(line, SLOW_MS);
+      [...answers, ...errors].forEach((text) => this.log(text));
+      await this.showSettings();
+      this.remember();
+    } catch (error) {
+      this.log(error.message);
+    }
+  }
+
+  log(text) {
+    const place = element('log');
+    place.textContent = `${place.textContent}${text}\n`.slice(-MOST_LOG);
+    place.scrollTop = place.scrollHeight;
+  }
+}

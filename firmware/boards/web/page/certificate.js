@@ -1,0 +1,69 @@
+// A device's results as they are read and printed.
+
+function setCertificate(place, device) {
+  place.replaceChildren();
+  const results = device.json ? JSON.parse(device.json) : {};
+  if (results.simulated || device.isSimulated) {
+    addTo(place, 'p', 'banner').textContent = 'Simulation: this bench is not real, and the figures say nothing of a real device';
+  }
+  const title = addTo(place, 'h3', 'device-name');
+  title.textContent = device.labels.device || 'Device without a name';
+  const list = addTo(place, 'dl', 'rows');
+  const row = (name, value) => {
+    if (value) {
+      addTo(list, 'dt').textContent = name;
+      addTo(list, 'dd').textContent = value;
+    }
+  };
+  LABELS.slice(1).forEach(([key, name]) => row(name, device.labels[key]));
+  row('Points', [device.source, device.understanding].filter(Boolean).join(': '));
+  row('Instrument', device.instrument);
+  setFigures(place, device);
+  for (const [kind, className] of [['WARNING', 'warning'], ['Note', 'note']]) {
+    for (const text of remarksOf(device.report, kind)) {
+      addTo(place, 'p', className).textContent = `${kind === 'Note' ? 'Note' : 'Warning'}: ${text}`;
+    }
+  }
+  const fit = sectionOf(device.report, 'FIT');
+  if (fit) {
+    place.append(setSection({...fit, heading: 'FIT, AND HOW GOOD IT IS'}));
+  }
+  setPictures(place, device, results);
+  const whole = addTo(place, 'details', 'whole');
+  addTo(whole, 'summary').textContent = 'The whole report';
+  const text = addTo(whole, 'pre', 'report');
+  text.tabIndex = 0;
+  text.setAttribute('aria-label', 'report');
+  text.textContent = reportWithLabels(device);
+}
+
+function setFigures(place, device) {
+  const figures = figuresOf(device.report);
+  if (!figures || figures.rows.length === 0) {
+    addTo(place, 'p', 'warning').textContent = 'There are no figures for this device; the report below says why.';
+    return;
+  }
+  const lead = addTo(place, 'dl', 'headline');
+  const [name, found, expanded] = figures.rows[0];
+  addTo(lead, 'dt').textContent = name;
+  addTo(lead, 'dd').textContent = `${found}${expanded && expanded !== '-' ? ` ± ${expanded}` : ''} % of S a`;
+  addTo(place, 'p', 'hint').textContent = `Largest error: ${figures.note.replace('+-', '±')}.`;
+  place.append(makeTable(figures.head, figures.rows));
+  addTo(place, 'p', 'hint').textContent = figures.words;
+}
+
+function setPictures(place, device, results) {
+  const pictures = addTo(place, 'div', 'pictures');
+  if (device.trace) {
+    new Plot(pictures, responsePicture(pointsOf(device.trace), results.model));
+  }
+  if (results.energy) {
+    new Plot(pictures, signalPicture(results));
+  }
+  if (device.impulse?.length > 0) {
+    new Plot(pictures, impulsePicture(device.impulse));
+  }
+  if (results.trend?.points?.length > 1) {
+    new Plot(pictures, trendPicture(results.trend));
+  }
+}

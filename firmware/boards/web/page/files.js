@@ -1,0 +1,47 @@
+// What somebody saves: the report, results.json and the points, as the PC program writes them.
+
+function saveFile(name, type, text) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], {type}));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// A name that every file system takes.
+function fileName(device, end) {
+  const name = device.labels.device.normalize('NFKD').replace(/[^A-Za-z0-9._-]+/g, '_').replace(/^[._]+/, '').slice(0, 60);
+  return `${name || 'device'}-${end}`;
+}
+
+const LABELS = [
+  ['device', 'Device'],
+  ['serial', 'Serial number'],
+  ['operator', 'Measured by'],
+  ['date', 'Date'],
+  ['note', 'Note'],
+];
+
+// The labels go where the program has them; the instrument's language is ASCII, and labels are not.
+function reportWithLabels(device) {
+  const given = LABELS.filter(([key]) => device.labels[key]);
+  if (given.length === 0 || !device.report) {
+    return device.report;
+  }
+  const rows = given.map(([key, name]) => `  ${name.padEnd(VALUE_COLUMN - 2)}${device.labels[key]}\n`).join('');
+  return device.report.replace('\n\n', () => `\n\nLABELS (as given)\n${rows}\n`);
+}
+
+function jsonWithLabels(device) {
+  if (device.json.includes('\n  "labels": {')) {
+    return device.json;
+  }
+  const members = LABELS.map(([key]) => `    "${key}": ${JSON.stringify(device.labels[key] || null)}`).join(',\n');
+  return device.json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
+}
+
+// The native form, with expanded uncertainties.
+function pointsCsv(device) {
+  const rows = pointsOf(device.trace).map((point) => point.join(','));
+  return `f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n${rows.join('\n')}\n`;
+}
