@@ -29,7 +29,7 @@ endfunction()
 set(desk ${PROJECT_SOURCE_DIR}/firmware/desk)
 emax_add_web_module(emax_${EMAX_BOARD_NAME}
   MEMORY 25165824
-  EXPORTS emax_list_commands emax_poll emax_start emax_store_bytes
+  EXPORTS emax_list_commands emax_poll emax_set_pace emax_start emax_store_bytes
   IMPORTS now_us read store_read store_write take_break write
   SOURCES
     ${EMAX_BOARD_FOLDER}/instrument/main.cpp

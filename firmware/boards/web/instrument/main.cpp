@@ -33,6 +33,32 @@ enum State : std::uint32_t {
   kWorking = 2,   // A sweep or an evaluation runs.
   kSettled = 4,   // All that came in was executed, and all answers were handed over.
   kSweeping = 8,  // What runs is the sweep.
+  kResting = 16,  // The bench is ahead of its pace: call again in a few milliseconds.
+};
+
+/// Holds the time of the bench, which moves block by block, to that of the clock on the wall.
+class Pacer final {
+ public:
+  /// @param[in] pace Seconds of the bench per second; 0 for as fast as it goes.
+  void set(double pace) noexcept { pace_ = pace > 0.0 ? pace : 0.0; }
+
+  /// @returns Whether the next block is not due yet.
+  bool is_ahead(bool is_sweeping, double bench_s, double now_s) noexcept {
+    if (pace_ == 0.0 || !is_sweeping) {
+      runs_ = false;
+      return false;
+    }
+    if (!runs_) {
+      runs_ = true;
+      ahead_s_ = bench_s - pace_ * now_s;
+    }
+    return bench_s - pace_ * now_s > ahead_s_;
+  }
+
+ private:
+  double pace_ = 0.0;
+  double ahead_s_ = 0.0;  // When the sweep began.
+  bool runs_ = false;
 };
 
 struct Hardware {
@@ -43,6 +69,7 @@ struct Hardware {
 };
 
 Hardware hardware;
+Pacer pacer;
 app::SweepSettings bench_settings;
 app::SimulatedBench simulated;
 app::Instrument* instrument = nullptr;
@@ -101,13 +128,24 @@ std::int32_t emax_start(double sensitivity, double natural_frequency_hz, double 
   return 0;
 }
 
+/// Seconds of the bench per second in sweeps; 0, as at first, for as fast as it goes.
+void emax_set_pace(double pace) noexcept { emax::web::pacer.set(pace); }
+
 /// Does a short piece of everything, after `emax_start()`.
 ///
 /// @returns The state, as bits.
 std::uint32_t emax_poll() noexcept {
+  constexpr double kPerMicrosecond = 1e-6;
   emax::app::Instrument& instrument = *emax::web::instrument;
-  instrument.poll();
-  return (instrument.is_busy() ? emax::web::kBusy : 0u) |
+  const bool is_resting = emax::web::pacer.is_ahead(
+      instrument.is_sweeping(), emax::web::hardware.bench.now_s(), kPerMicrosecond * emax_now_us());
+  if (is_resting) {
+    instrument.converse();
+  } else {
+    instrument.poll();
+  }
+  return (is_resting && !instrument.is_conversing() ? emax::web::kResting : 0u) |
+         (instrument.is_busy() ? emax::web::kBusy : 0u) |
          (instrument.is_working() ? emax::web::kWorking : 0u) |
          (instrument.is_settled() ? emax::web::kSettled : 0u) |
          (instrument.is_sweeping() ? emax::web::kSweeping : 0u);

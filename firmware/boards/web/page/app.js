@@ -124,7 +124,8 @@ class App {
 
   async connectSimulated(mounted, before = null) {
     const kept = this.keep.get('store');
-    const port = await SimulatedPort.open(mounted, kept ? Uint8Array.from(atob(kept), (c) => c.charCodeAt(0)) : null);
+    const port = await SimulatedPort.open(mounted, kept ? Uint8Array.from(atob(kept), (c) => c.charCodeAt(0)) : null,
+      Number(element('sim-pace').value));
     port.onstore = (bytes) => this.keep.set('store', btoa(String.fromCharCode(...bytes)));
     this.mounted = mounted;
     await this.use(port, false);
@@ -149,6 +150,7 @@ class App {
   async use(port, isSlow) {
     const before = this.port;
     this.port = null;
+    this.held = null;
     await before?.close();
     port.onend = (reason) => this.ended(port, reason);
     const scpi = new Scpi(port);
@@ -200,6 +202,7 @@ class App {
   async restoreDefaults() {
     const device = this.device;
     await this.scpi.tell('*RST');
+    this.held = null;
     await this.showSettings();
     if (device) {
       await this.hand(device);
@@ -234,14 +237,19 @@ class App {
       impulse: [], instrument: this.identity, isSimulated: false, settings: this.learnt};
   }
 
-  // The device's points or parameters are the instrument's again.
+  // The device's points or parameters are the instrument's again, if they are not yet.
   async hand(device) {
+    if (this.held === device.id) {
+      return;
+    }
+    this.held = null;
     if (device.trace) {
-      const lines = pointsOf(device.trace).map((point) => `TRAC:FRES:DATA ${point.join(',')}`);
-      await this.job.takeTable(device.lines ?? lines, device.reference);
+      const lines = linesOf(device.trace).map((line) => `TRAC:FRES:DATA ${line}`);
+      await this.job.takeTable(lines, device.reference);
     } else if (device.model) {
       await this.scpi.tell(`CALC:MOD ${device.model}`);
     }
+    this.held = device.id;
   }
 
   async takeFiles(files) {
@@ -277,9 +285,9 @@ class App {
     this.progress(0, `reading ${file.name}`);
     const {understanding, lines} = await this.desk.readTable(file.name, new Uint8Array(await file.arrayBuffer()), options);
     const device = this.newDevice('table', file.name.replace(/\.[^.]*$/, ''));
-    Object.assign(device, {source: file.name, understanding, lines, reference: options.reference || '0'});
-    await this.job.takeTable(lines, device.reference);
-    device.trace = lines.map((line) => line.slice(line.indexOf(' ') + 1)).join(',');
+    const trace = lines.map((line) => line.slice(line.indexOf(' ') + 1)).join(',');
+    Object.assign(device, {source: file.name, understanding, trace, reference: options.reference || '0'});
+    await this.hand(device);
     this.putDevice(device);
     await this.evaluate(device);
     return device;
@@ -311,7 +319,7 @@ class App {
     const device = this.newDevice('model', 'Device by its parameters');
     device.model = values.slice(3).every((value) => value === '') ? values.slice(0, 3).join(',') : values.join(',');
     device.source = 'parameters as given';
-    await this.scpi.tell(`CALC:MOD ${device.model}`);
+    await this.hand(device);
     this.putDevice(device);
     await this.evaluate(device);
   }
@@ -323,6 +331,7 @@ class App {
     let plot = null;
     element('growing').replaceChildren();
     this.job.isStopped = false;
+    this.held = null;
     let problems = [];
     let broken = null;
     try {
@@ -340,6 +349,7 @@ class App {
           }
         });
       Object.assign(device, await this.job.points());
+      this.held = device.id;
     } catch (error) {
       broken = error;
     }
@@ -370,7 +380,15 @@ class App {
 
   async evaluate(device) {
     this.job.isStopped = false;
-    const problems = await this.job.evaluate((percent, stage) => this.progress(percent, `computing: ${stage}`));
+    let problems = [];
+    try {
+      problems = await this.job.evaluate((percent, stage) => this.progress(percent, `computing: ${stage}`));
+    } catch (error) {
+      if (!(error instanceof Refusal)) {
+        throw error;
+      }
+      problems = [error.message];
+    }
     if (this.job.isStopped) {
       this.progress(0, '');
       throw new Error('stopped; the points are kept');
@@ -380,6 +398,8 @@ class App {
       Object.assign(device, await this.job.results());
     } catch (error) {
       problems.push(error.message);
+      Object.assign(device, {json: '', report: '', impulse: []});
+      device.fit = await this.job.sensitivity();
     }
     device.settings = this.learnt;
     this.progress(0, '');
@@ -498,6 +518,7 @@ class App {
       const rank = device.rank_best === device.rank_worst ? `${device.rank_best}` : `${device.rank_best}–${device.rank_worst}`;
       addTo(order, 'li').textContent = `${rank}: ${rows[i].name}, ${shown(device.value)} ${unit}`;
     });
+    addTo(place, 'p', 'hint').textContent = 'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties.';
     drawRanking(addTo(place, 'div', 'plot'), rows, unit);
     const pre = addTo(place, 'pre', 'report');
     pre.tabIndex = 0;
@@ -534,6 +555,7 @@ class App {
     element('line').value = '';
     this.log(`> ${line}`);
     try {
+      this.held = null;  // Whatever the line has changed.
       const {answers, errors} = await this.scpi.exchange(line, SLOW_MS);
       [...answers, ...errors].forEach((text) => this.log(text));
       await this.showSettings();

@@ -29,6 +29,9 @@ function setCertificate(place, device) {
     place.append(setSection({...fit, heading: 'FIT, AND HOW GOOD IT IS'}));
   }
   setPictures(place, device, results);
+  if (!device.report) {
+    return;
+  }
   const whole = addTo(place, 'details', 'whole');
   addTo(whole, 'summary').textContent = 'The whole report';
   const text = addTo(whole, 'pre', 'report');
@@ -40,13 +43,15 @@ function setCertificate(place, device) {
 function setFigures(place, device) {
   const figures = figuresOf(device.report);
   if (!figures || figures.rows.length === 0) {
-    addTo(place, 'p', 'warning').textContent = 'There are no figures for this device; the report below says why.';
+    const {fit} = device;
+    const known = fit ? ` The points give the sensitivity alone: S = ${shown(fit.S, 6)} V/(m/s²), U = ${shown(2 * fit.uS, 2)} (k = 2).` : '';
+    addTo(place, 'p', 'warning').textContent = `There are no figures for this device.${known}`;
     return;
   }
   const lead = addTo(place, 'dl', 'headline');
   const [name, found, expanded] = figures.rows[0];
   addTo(lead, 'dt').textContent = name;
-  addTo(lead, 'dd').textContent = `${found}${expanded && expanded !== '-' ? ` ± ${expanded}` : ''} % of S a`;
+  addTo(lead, 'dd').textContent = `${found}${expanded && expanded !== '-' ? ` ± ${expanded}` : ''} % of S\u00a0a`;
   addTo(place, 'p', 'hint').textContent = `Largest error: ${figures.note.replace('+-', '±')}.`;
   place.append(makeTable(figures.head, figures.rows));
   addTo(place, 'p', 'hint').textContent = figures.words;

@@ -22,26 +22,28 @@ const LABELS = [
   ['note', 'Note'],
 ];
 
-// The labels go where the program has them; the instrument's language is ASCII, and labels are not.
+const SIMULATION = 'SIMULATION: no real sensor was measured.\n';
+
+// The labels go where the program has them; the instrument's language is ASCII, and labels are not. Points of a simulated
+// sweep stay simulated when they are evaluated again, from what the browser keeps.
 function reportWithLabels(device) {
   const given = LABELS.filter(([key]) => device.labels[key]);
-  if (given.length === 0 || !device.report) {
-    return device.report;
-  }
+  const isUnmarked = device.isSimulated && !device.report.startsWith('SIMULATION');
+  const report = isUnmarked && device.report ? SIMULATION + device.report : device.report;
   const rows = given.map(([key, name]) => `  ${name.padEnd(VALUE_COLUMN - 2)}${device.labels[key]}\n`).join('');
-  return device.report.replace('\n\n', () => `\n\nLABELS (as given)\n${rows}\n`);
+  return rows ? report.replace('\n\n', () => `\n\nLABELS (as given)\n${rows}\n`) : report;
 }
 
 function jsonWithLabels(device) {
-  if (device.json.includes('\n  "labels": {')) {
-    return device.json;
+  if (device.kind === 'results') {
+    return device.json;  // Somebody's file, as it was.
   }
   const members = LABELS.map(([key]) => `    "${key}": ${JSON.stringify(device.labels[key] || null)}`).join(',\n');
-  return device.json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
+  const json = device.isSimulated ? device.json.replace('\n  "simulated": false', '\n  "simulated": true') : device.json;
+  return json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
 }
 
 // The native form, with expanded uncertainties.
 function pointsCsv(device) {
-  const rows = pointsOf(device.trace).map((point) => point.join(','));
-  return `f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n${rows.join('\n')}\n`;
+  return `f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n${linesOf(device.trace).join('\n')}\n`;
 }

@@ -91,6 +91,13 @@ class Job {
     return {report, json, impulse: await this.impulse(JSON.parse(json))};
   }
 
+  // What there is of a fit where the points give no more than S; nothing if there is not even that.
+  async sensitivity() {
+    const {answers} = await this.scpi.exchange('CALC:IDEN?');
+    const [S, , , uS] = (answers[0] ?? '').split(',').map(Number);
+    return S > 0 ? {S, uS} : null;
+  }
+
   async impulse({impulse_response: response, energy}) {
     if (!response || !energy) {
       return [];

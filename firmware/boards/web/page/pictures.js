@@ -4,12 +4,12 @@ const RESPONSE_STEPS = 240;
 
 // Points as FETCh:TRACe? has them: f, A, phi, U(A), U(phi) with k = 2; an unknown phase has a huge U.
 function pointsOf(trace) {
-  const numbers = trace.split(',').map(Number);
-  const points = [];
-  for (let i = 0; i + 4 < numbers.length; i += 5) {
-    points.push(numbers.slice(i, i + 5));
-  }
-  return points;
+  return linesOf(trace).map((line) => line.split(',').map(Number));
+}
+
+// The same in the digits that they came in.
+function linesOf(trace) {
+  return trace.match(/[^,]+(,[^,]+){4}/g) ?? [];
 }
 
 function modelResponse({S, f0, beta}, frequency) {

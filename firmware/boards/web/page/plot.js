@@ -134,7 +134,7 @@ class Plot {
         if (!panel.title && !seen.has(series.name)) {
           seen.add(series.name);
           const item = document.createElement('li');
-          item.className = `key k${number}`;
+          item.className = `key k${number} ${series.kind}`;
           item.textContent = series.name;
           list.append(item);
         }

@@ -21,7 +21,8 @@ function makeWorker() {
 
 class SimulatedPort {
   // device: S, f0 and beta of what is mounted on the simulated bench; three zeros for the usual one.
-  static open(device, store) {
+  // pace: seconds of the bench per second; 0 for as fast as it goes.
+  static open(device, store, pace = 0) {
     return new Promise((resolve, reject) => {
       const port = new SimulatedPort(makeWorker());
       port.worker.onerror = (event) => reject(new Error(event.message || 'the instrument does not start'));
@@ -35,7 +36,7 @@ class SimulatedPort {
         port.worker.onmessage = (event) => port.take(event.data);
         resolve(port);
       };
-      port.worker.postMessage({kind: 'start', module: heldModule('module-instrument'), device, store});
+      port.worker.postMessage({kind: 'start', module: heldModule('module-instrument'), device, store, pace});
     });
   }
 

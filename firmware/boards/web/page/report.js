@@ -49,7 +49,7 @@ function figuresOf(report) {
     words: section.lines.filter((line) => line.trim().split(/\s{2,}/).length === 1).map((line) => line.trim()).join(' ')};
 }
 
-// A section as rows of name and value, tables and paragraphs.
+// A section as rows of name and value, tables and paragraphs; not its warnings and notes, which stand elsewhere.
 function setSection(section) {
   const part = document.createElement('section');
   part.className = 'part';
@@ -58,10 +58,11 @@ function setSection(section) {
   part.append(heading);
   let list = null;
   let text = null;
+  let inRemark = false;
   for (const line of section.lines) {
     const isRow = line.length > VALUE_COLUMN && line[VALUE_COLUMN] !== ' ' && line.slice(VALUE_COLUMN - 2, VALUE_COLUMN) === '  ' &&
       /^  (\S| {26})/.test(line) && !/^ {2}\S.*\S {2,}\S.* {2,}\S.* {2,}\S/.test(line);
-    if (isRow) {
+    if (isRow && !inRemark) {
       list ??= addTo(part, 'dl', 'rows');
       text = null;
       const name = line.slice(0, VALUE_COLUMN).trim();
@@ -76,11 +77,15 @@ function setSection(section) {
     list = null;
     if (line.trim() === '') {
       text = null;
+      inRemark = false;
       continue;
     }
-    const isRemark = /^ {2}(WARNING|Note): /.test(line);
-    if (!text || isRemark) {
-      text = addTo(part, 'pre', isRemark ? 'text remark' : 'text');
+    inRemark ||= /^ {2}(WARNING|Note): /.test(line);
+    if (inRemark) {
+      continue;
+    }
+    if (!text) {
+      text = addTo(part, 'pre', 'text');
       text.tabIndex = 0;
       text.setAttribute('aria-label', heading.textContent);
     }

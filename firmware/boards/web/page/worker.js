@@ -4,6 +4,8 @@
 const BUSY = 1;
 const WORKING = 2;
 const SETTLED = 4;
+const RESTING = 16;
+const REST_MS = 4;
 const SLICE_MS = 10;
 const ERASED = 0xff;
 
@@ -75,16 +77,21 @@ function runInstrument() {
   let state = 0;
   do {
     state = instrument.emax_poll();
-  } while (state & BUSY && performance.now() < end);
+  } while (state & BUSY && !(state & RESTING) && performance.now() < end);
   const bytes = join(output);
   output = [];
   const isSettled = Boolean(state & SETTLED) && (!(state & BUSY) || Boolean(state & WORKING));
-  self.postMessage({kind: 'bytes', bytes, isSettled, taken});
+  if (bytes.length > 0 || isSettled) {
+    self.postMessage({kind: 'bytes', bytes, isSettled, taken});
+  }
   if (storeChanged) {
     storeChanged = false;
     self.postMessage({kind: 'store', bytes: store.slice()});
   }
-  if (state & BUSY) {
+  if (state & RESTING) {
+    scheduled = true;
+    setTimeout(runInstrument, REST_MS);
+  } else if (state & BUSY) {
     schedule();
   }
 }
@@ -100,6 +107,7 @@ function start(message) {
   instrument.emax_list_commands();
   const commands = new TextDecoder().decode(join(output));
   output = [];
+  instrument.emax_set_pace(message.pace);
   const isRefused = instrument.emax_start(...message.device) !== 0;
   self.postMessage({kind: 'started', isRefused, commands});
   if (isRefused) {
