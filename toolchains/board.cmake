@@ -12,6 +12,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   SOURCES <file>...      Startup and drivers.
 #   PRODUCT <file>         Makes what the board runs where that is no image with startup and memory map: nothing of
 #                          common/images.cmake is then made, and of the four above only CORE is needed.
+#   CHECK <file>           Adds the tests of such a product, for preset `check`.
 #   INCLUDES <folder>...   Their headers.
 #   SIMULATED_BENCH        The analog side is hal/sim, and about() tells what that was built from.
 #   WATCHDOG               It has one.
@@ -33,7 +34,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   SLOW_TEST_S <s>        What of these takes longer is left out; slow_tests.txt in the board's folder lists it.
 function(emax_declare_board)
   set(flags SIMULATED_BENCH WATCHDOG WITHOUT_LOOPBACK SEMIHOSTING TELNET_BREAK)
-  set(values CORE PRODUCT CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
+  set(values CORE PRODUCT CHECK CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
   set(lists SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "${flags}" "${values}" "${lists}")
   set(file ${EMAX_BOARD_FOLDER}/board.cmake)
@@ -49,10 +50,11 @@ function(emax_declare_board)
       message(FATAL_ERROR "${file} does not declare ${keyword}")
     endif()
   endforeach()
+  emax_demand_with(CHECK PRODUCT)
   emax_demand_with(RUNNER SEMIHOSTING)
   emax_demand_with(GOOGLETEST_MEMORY RUNNER SLOW_TEST_S)
   emax_demand_with(COUNTER RUNNER SIMULATED_BENCH INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ)
-  foreach(keyword IN ITEMS SOURCES PRODUCT INCLUDES COUNTER GOOGLETEST_MEMORY)
+  foreach(keyword IN ITEMS SOURCES PRODUCT CHECK INCLUDES COUNTER GOOGLETEST_MEMORY)
     set(files ${arg_${keyword}})
     set(arg_${keyword} "")
     foreach(file IN LISTS files)

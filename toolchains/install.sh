@@ -4,10 +4,11 @@ set -eu
 
 usage() {
   cat <<'TEXT'
-usage: toolchains/install.sh [host | target]
+usage: toolchains/install.sh [host | web | target]
 
   host     what builds and runs the program on this PC: 0.1 GB to download, 0.4 GB installed
-  target   that, and what builds the firmware and runs it in an emulator: 0.8 GB, 4.5 GB installed
+  web      what builds the page emax.html, which a browser runs
+  target   what host installs, and what builds the firmware and runs it in an emulator: 0.8 GB, 4.5 GB installed
   none     that, and everything the tests of all configurations need: 1 GB, 5.5 GB installed
 
 Installs only what is missing; with nothing missing it needs neither root nor a network.
@@ -17,7 +18,8 @@ TEXT
 build_packages='cmake g++ gnuplot-nox ninja-build'
 target_packages="gcc-arm-none-eabi gcc-riscv64-unknown-elf googletest libnewlib-arm-none-eabi \
 libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-mpmath python3-numpy qemu-system-arm qemu-system-misc"
-check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev libunicorn-dev \
+web_packages="clang cmake gcc-arm-none-eabi libnewlib-dev libstdc++-arm-none-eabi-newlib lld ninja-build python3"
+check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev libunicorn-dev lld \
 poppler-utils python3-pyvisa python3-pyvisa-py"
 
 if [ $# -gt 1 ]; then
@@ -26,6 +28,7 @@ if [ $# -gt 1 ]; then
 fi
 case "${1-all}" in
   host) wanted=$build_packages ;;
+  web) wanted=$web_packages ;;
   target) wanted="$build_packages $target_packages" ;;
   all) wanted="$build_packages $target_packages $check_packages" ;;
   -h | --help)

@@ -102,11 +102,16 @@ class Browser:
         message, self.buffer = self.buffer.split(b"\0", 1)
         return json.loads(message)
 
-    def open(self, path: pathlib.Path, width: int = 1000) -> None:
+    def open(self, path: pathlib.Path, width: int = 1000, fragment: str = "") -> None:
         """Returns when the page is loaded; events of pages before are forgotten."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=1000, deviceScaleFactor=1, mobile=False)
+        if fragment or self.evaluate("location.hash"):
+            self.load("about:blank")  # Another fragment alone would load nothing.
+        self.load(path.as_uri() + fragment)
+
+    def load(self, address: str) -> None:
         self.events = []
-        self.call("Page.navigate", url=path.as_uri())
+        self.call("Page.navigate", url=address)
         while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
             self.events.append(self.next_message())
 
@@ -127,6 +132,12 @@ class Browser:
         self.evaluate("0")
         sent = [event for event in self.events if event.get("method") == "Network.requestWillBeSent"]
         return [event["params"]["request"]["url"] for event in sent]
+
+    def choose_files(self, selector: str, paths: list[pathlib.Path]) -> None:
+        """As somebody who picks files for an input."""
+        root = self.call("DOM.getDocument")["root"]["nodeId"]
+        node = self.call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+        self.call("DOM.setFileInputFiles", nodeId=node, files=[str(path) for path in paths])
 
     def pdf(self) -> bytes:
         return base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True)["data"])

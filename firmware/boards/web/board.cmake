@@ -3,4 +3,5 @@
 emax_declare_board(
   CORE wasm32
   SIMULATED_BENCH
-  PRODUCT product.cmake)
+  PRODUCT product.cmake
+  CHECK check.cmake)

@@ -1,12 +1,14 @@
-# The page emax.html, which holds the instrument as a module of WebAssembly, and the gates on that module.
+# The page emax.html, which holds the instrument as a module of WebAssembly.
+
+include(${EMAX_BOARD_FOLDER}/interface.cmake)
 
 # In bytes. Both stacks lie below the variables, so that an overflow traps.
 set(EMAX_WEB_STACK 262144)
 
-# emax_add_web_module(<name> MEMORY <bytes> EXPORTS <function>... [IMPORTS <function>...] [GATE <option>...] SOURCES <file>...)
-# <name>.wasm with a memory of that size, no more and no less, and the gate on it.
+# emax_add_web_module(<name> MEMORY <bytes> EXPORTS <function>... SOURCES <file>...)
+# <name>.wasm with a memory of that size, no more and no less.
 function(emax_add_web_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "MEMORY" "EXPORTS;IMPORTS;GATE;SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "MEMORY" "EXPORTS;SOURCES")
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES SUFFIX .wasm RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
   target_link_libraries(${name} PRIVATE emax_arithmetic emax_warnings)
@@ -17,20 +19,13 @@ function(emax_add_web_module name)
   foreach(function IN LISTS arg_EXPORTS)
     target_link_options(${name} PRIVATE LINKER:--export=${function})
   endforeach()
-  if(EMAX_TESTS)
-    list(JOIN arg_EXPORTS "," exports)
-    list(JOIN arg_IMPORTS "," imports)
-    emax_add_gate(${name}.module wasm_module.py --budgets ${EMAX_BUDGETS} ${arg_GATE}
-      --imports=${imports} --exports=${exports} $<TARGET_FILE:${name}>)
-  endif()
 endfunction()
 
 # The instrument. Time goes by in algo and in the simulated bench; the rest had better be small.
 set(desk ${PROJECT_SOURCE_DIR}/firmware/desk)
 emax_add_web_module(emax_${EMAX_BOARD_NAME}
   MEMORY 25165824
-  EXPORTS emax_list_commands emax_poll emax_set_pace emax_start emax_store_bytes
-  IMPORTS now_us read store_read store_write take_break write
+  EXPORTS ${EMAX_WEB_EXPORTS}
   SOURCES
     ${EMAX_BOARD_FOLDER}/instrument/main.cpp
     ${EMAX_BOARD_FOLDER}/instrument/memory.cpp
@@ -45,8 +40,7 @@ target_link_libraries(emax_${EMAX_BOARD_NAME} PRIVATE emax_app emax_sim emax_fre
 file(GLOB import ${desk}/import/*.cpp)
 emax_add_web_module(emax_${EMAX_BOARD_NAME}_desk
   MEMORY 67108864
-  EXPORTS emax_answer emax_answer_size emax_answer_text emax_request
-  GATE --heap
+  EXPORTS ${EMAX_WEB_DESK_EXPORTS}
   SOURCES
     ${EMAX_BOARD_FOLDER}/desk/main.cpp
     ${EMAX_BOARD_FOLDER}/desk/page_files.cpp

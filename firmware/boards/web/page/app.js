@@ -136,8 +136,8 @@ class App {
     }
     const device = before?.device ? this.keep.get(`device.${before.device}`) : null;
     if (device) {
-      await this.hand(device);
       this.showDevice(device);
+      await this.hand(device);
     }
     this.remember();
   }
@@ -239,7 +239,7 @@ class App {
 
   // The device's points or parameters are the instrument's again, if they are not yet.
   async hand(device) {
-    if (this.held === device.id) {
+    if (this.held === device.id || device.isPartial) {
       return;
     }
     this.held = null;
@@ -428,7 +428,7 @@ class App {
     element('save-report').hidden = !device.report;
     element('save-json').hidden = !device.json;
     element('save-csv').hidden = !device.trace;
-    element('again').hidden = !device.trace && !device.model;
+    element('again').hidden = device.isPartial || (!device.trace && !device.model);
     document.title = `${device.labels.device} - emax`;
     this.markStale();
   }
@@ -553,6 +553,7 @@ class App {
       return;
     }
     element('line').value = '';
+    element('speak').setAttribute('aria-busy', 'true');
     this.log(`> ${line}`);
     try {
       this.held = null;  // Whatever the line has changed.
@@ -563,6 +564,7 @@ class App {
     } catch (error) {
       this.log(error.message);
     }
+    element('speak').setAttribute('aria-busy', 'false');
   }
 
   log(text) {

@@ -42,6 +42,11 @@ function setCertificate(place, device) {
 
 function setFigures(place, device) {
   const figures = figuresOf(device.report);
+  if (device.isPartial) {
+    addTo(place, 'p', 'warning').textContent = 'The sweep broke off before the uncertainties of its points were known. Save points.csv, ' +
+      'and read it as a table with an uncertainty of your own.';
+    return;
+  }
   if (!figures || figures.rows.length === 0) {
     const {fit} = device;
     const known = fit ? ` The points give the sensitivity alone: S = ${shown(fit.S, 6)} V/(m/s²), U = ${shown(2 * fit.uS, 2)} (k = 2).` : '';

@@ -43,7 +43,11 @@ function jsonWithLabels(device) {
   return json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
 }
 
-// The native form, with expanded uncertainties.
+// The native form, with expanded uncertainties; without, where a sweep broke off before it knew them.
 function pointsCsv(device) {
+  if (device.isPartial) {
+    const rows = pointsOf(device.trace).map((point) => point.slice(0, 3).join(','));
+    return `f_hz,amplitude,phase_deg\n${rows.join('\n')}\n`;
+  }
   return `f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg\n${linesOf(device.trace).join('\n')}\n`;
 }

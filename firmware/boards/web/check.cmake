@@ -1,0 +1,30 @@
+# The gates on the modules, and the page in a browser, beside the program of the PC and an emulated board.
+
+include(${EMAX_BOARD_FOLDER}/interface.cmake)
+set(tree ${PROJECT_SOURCE_DIR}/build/${configuration})
+set(gate ${EMAX_PYTHON} -B ${PROJECT_SOURCE_DIR}/toolchains/gates/wasm_module.py
+  --budgets ${PROJECT_SOURCE_DIR}/toolchains/budgets.txt)
+list(JOIN EMAX_WEB_EXPORTS "," exports)
+list(JOIN EMAX_WEB_IMPORTS "," imports)
+list(JOIN EMAX_WEB_DESK_EXPORTS "," desk_exports)
+set(tests ${configuration}.gates.emax_web ${configuration}.gates.emax_web_desk)
+add_test(NAME ${configuration}.gates.emax_web
+  COMMAND ${gate} --imports ${imports} --exports ${exports} ${tree}/emax_web.wasm)
+add_test(NAME ${configuration}.gates.emax_web_desk
+  COMMAND ${gate} --heap --exports ${desk_exports} ${tree}/emax_web_desk.wasm)
+
+set(folder ${PROJECT_SOURCE_DIR}/host_tests/web)
+foreach(suite IN ITEMS test_page.py test_serial.py)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${suite})
+  file(STRINGS ${folder}/${suite} classes REGEX "^class [A-Za-z]+\\((Page|Serial)Test\\)")
+  list(TRANSFORM classes REPLACE "^class ([A-Za-z]+).*" "\\1")
+  list(REMOVE_ITEM classes SerialTest)
+  foreach(class IN LISTS classes)
+    add_test(NAME ${configuration}.page.${class}
+      COMMAND ${EMAX_PYTHON} -B ${suite} ${host_program} ${PROJECT_SOURCE_DIR}/host_tests/data ${tree}/emax.html
+        "${emulated_board}" ${class}
+      WORKING_DIRECTORY ${folder})
+    list(APPEND tests ${configuration}.page.${class})
+  endforeach()
+endforeach()
+set_tests_properties(${tests} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT} LABELS ${configuration})
