@@ -39,6 +39,7 @@ class App {
     on('compare', 'submit', () => this.work(() => this.compare()));
     on('save-comparison', 'click', () => saveFile('comparison.csv', 'text/csv', this.comparisonCsv));
     on('speak', 'submit', () => this.speak());
+    on('clear', 'click', () => this.scpi?.clear());
     on('leave-run', 'click', () => {
       history.replaceState(null, '', location.pathname + location.search);
       location.reload();

@@ -4,6 +4,7 @@ const MARK = 'SYST:ERR:ALL?;:SYST:VERS?';
 const MARKED = /^(-?\d+,".*");1999\.0$/;
 const NO_ERROR = '0,"No error"';
 const ANSWER_LIMIT_MS = 8000;
+const CLEAR_MS = 200;
 
 // What the instrument has refused, in its words.
 class Refusal extends Error {}
@@ -21,6 +22,7 @@ class Scpi {
     this.messages = [];
     this.turn = Promise.resolve();
     this.ended = null;
+    this.isCleared = false;
     this.onwarning = () => {};
     this.onraw = () => {};
     port.onbytes = (bytes) => this.take(bytes);
@@ -66,9 +68,12 @@ class Scpi {
   // The next message as text, a block without its front.
   async next(limit) {
     const end = Date.now() + limit;
-    while (this.messages.length === 0) {
+    while (this.messages.length === 0 || this.isCleared) {
       if (this.ended) {
         throw this.ended;
+      }
+      if (this.isCleared) {
+        throw new Error('cleared');
       }
       if (Date.now() >= end) {
         throw new Error('the instrument does not answer; check cable and baud rate, and that it runs emax');
@@ -102,6 +107,10 @@ class Scpi {
   // All answers of a line, and the errors that came with it.
   exchange(line, limit = ANSWER_LIMIT_MS) {
     return this.inTurn(async () => {
+      if (this.isCleared) {
+        await new Promise((resolve) => setTimeout(resolve, CLEAR_MS));  // What was under way has arrived by then.
+        Object.assign(this, {isCleared: false, buffer: new Uint8Array(0), messages: []});
+      }
       this.write(line);
       this.write(MARK);
       const answers = [];
@@ -134,6 +143,13 @@ class Scpi {
       this.onwarning(errors);
     }
     return answers[0];
+  }
+
+  // Device clear: what answers or is computed for a question ends; settings, and what INITiate has started, stay.
+  async clear() {
+    this.isCleared = true;
+    await this.port.clear();
+    this.wake();
   }
 
   // Past all that waits: the drive goes to zero at once.
