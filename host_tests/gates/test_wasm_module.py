@@ -18,7 +18,9 @@ def name(text: str) -> bytes:
     return bytes([len(text)]) + text.encode()
 
 
-def module(*, imports=("read",), exports=("emax_poll",), limits=b"\1\2\2", extra=b"", functions=("emax_poll",), feature="sign-ext"):
+def module(
+    *, imports=("read",), exports=("emax_poll",), limits=b"\1\2\2", extra=b"", functions=("emax_poll",), feature="sign-ext"
+):
     imported = b"".join(name("emax") + name(text) + b"\0\0" for text in imports)
     exported = b"".join(name(text) + b"\0\0" for text in exports) + name("memory") + b"\2\0"
     named = b"".join(bytes([i]) + name(text) for i, text in enumerate(functions))

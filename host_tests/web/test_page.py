@@ -238,7 +238,9 @@ class Bench(PageTest):
     def test_settings_are_the_instruments(self):
         self.open()
         learnt = self.speak("*LRN?")[0].split(";")
-        fields = self.browser.evaluate("[...document.querySelectorAll('#settings-list [data-header]')].map((f) => `:${f.dataset.header} ${f.value}`)")
+        fields = self.browser.evaluate(
+            "[...document.querySelectorAll('#settings-list [data-header]')].map((f) => `:${f.dataset.header} ${f.value}`)"
+        )
         self.assertEqual(sorted(fields), sorted(learnt))
         order = "document.querySelector('[data-header=\"CALC:FILT:ORD\"]')"
         change = "(() => {{ const f = {}; f.value = '{}'; f.dispatchEvent(new Event('change')); }})()"
@@ -284,7 +286,8 @@ class Readers(PageTest):
         first = [line for line in (DATA / "tables" / "plain.csv").read_text().splitlines() if line[:1].isdigit()][1]
         frequency, amplitude = map(float, first.split(",")[:2])
         values = self.browser.evaluate("document.querySelector('.values').textContent")
-        self.assertTrue(values.startswith(f"frequency {frequency:.5g} Hz · measured {amplitude:.5g} V/(m/s²) · fitted "), values)
+        begin = f"frequency {frequency:.5g} Hz · measured {amplitude:.5g} V/(m/s²) · fitted "
+        self.assertTrue(values.startswith(begin), values)
 
     def test_print_a_certificate(self):
         self.open()
@@ -296,7 +299,8 @@ class Readers(PageTest):
         path.write_bytes(self.browser.pdf())
         words = subprocess.run(["pdftotext", "-layout", path, "-"], capture_output=True, text=True, check=True).stdout
         found = self.browser.evaluate("document.querySelector('.headline dd').textContent").replace("\u00a0", " ")
-        for expected in ["Device 4711", found, "Frequency response", "MONTE CARLO OF THE PAPER", "40 points"]:
+        conditions = "Butterworth low-pass, order 10, cutoff 1000 Hz"
+        for expected in ["Device 4711", found, conditions, "Frequency response", "MONTE CARLO OF THE PAPER", "40 points"]:
             self.assertIn(expected, words.replace("\u00a0", " "))
         for control in ["Start the sweep", "Save report.txt", "Speak SCPI"]:
             self.assertNotIn(control, words)

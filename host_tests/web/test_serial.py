@@ -32,7 +32,13 @@ FAKE = """
   Object.defineProperty(navigator, 'serial', {value: {requestPort: async () => port}});
 })();
 """
-QUICK = ["CALC:MCAR:TRI 1000", "SENS:SWE:FREQ 1000,2000,3000,4000,5000", "CALC:TREN:TIME 0.0005,0.001", "CALC:ENER:TIME 0.001"]
+QUICK = [
+    "CALC:MCAR:TRI 1000",
+    "CALC:ENER:TIME 0.001",
+    "CALC:TREN:TIME 0.0005,0.001",
+    "SENS:SWE:REP 2",
+    "SENS:SWE:FREQ 1000,2000,3000,4000,5000",
+]
 
 
 class SerialTest(PageTest):
@@ -106,7 +112,9 @@ class SerialProgram(SerialTest):
         self.process = None
         # The points of all three are kept, over a reload, too.
         self.open()
-        sources = self.browser.evaluate("[...document.querySelectorAll('#device-list tbody tr')].map((row) => row.cells[4].textContent)")
+        sources = self.browser.evaluate(
+            "[...document.querySelectorAll('#device-list tbody tr')].map((row) => row.cells[4].textContent)"
+        )
         self.assertEqual(sources, ["sweep"] * 3)
         rows = self.saved("save-csv").splitlines()
         self.assertGreaterEqual(len(rows), 3)
@@ -116,7 +124,8 @@ class SerialProgram(SerialTest):
         self.assert_quiet()
 
     def test_is_left_where_something_else_answers(self):
-        self.plug_in(["sh", "-c", "while read line; do case $line in *IDN*) echo other,thing,1,2;; *ERR*) echo '0,\"No error\";1999.0';; esac; done"])
+        answers = "*IDN*) echo other,thing,1,2;; *ERR*) echo '0,\"No error\";1999.0';;"
+        self.plug_in(["sh", "-c", f"while read line; do case $line in {answers} esac; done"])
         self.connect()
         self.assertIn("this instrument says it is other,thing,1,2, not emax", self.text("problem"))
         self.assertEqual(self.text("connection"), "not connected")

@@ -26,15 +26,17 @@ class App {
     });
     on('connect-simulated', 'click', () => this.work(() => this.connectSimulated([0, 0, 0])));
     on('connect-serial', 'click', () => this.work(() => this.connectSerial()));
-    on('simulated', 'submit', () => this.work(() => this.connectSimulated(['sim-s', 'sim-f0', 'sim-beta'].map((id) => Number(element(id).value)))));
+    on('simulated', 'submit', () => this.work(() =>
+      this.connectSimulated(['sim-s', 'sim-f0', 'sim-beta'].map((id) => Number(element(id).value)))));
     on('defaults', 'click', () => this.work(() => this.restoreDefaults()));
-    on('sweep', 'click', () => this.work(() => this.sweep()));
-    on('model', 'submit', () => this.work(() => this.takeModel()));
+    on('sweep', 'click', () => this.work(() => this.sweep()).then(() => this.toResult()));
+    on('model', 'submit', () => this.work(() => this.takeModel()).then(() => this.toResult()));
     on('abort', 'click', () => this.job?.stop());
     on('again', 'click', () => this.work(() => this.again()));
     on('print', 'click', () => this.print());
     on('save-report', 'click', () => saveFile(fileName(this.device, 'report.txt'), 'text/plain', reportWithLabels(this.device)));
-    on('save-json', 'click', () => saveFile(fileName(this.device, 'results.json'), 'application/json', jsonWithLabels(this.device)));
+    on('save-json', 'click', () =>
+      saveFile(fileName(this.device, 'results.json'), 'application/json', jsonWithLabels(this.device)));
     on('save-csv', 'click', () => saveFile(fileName(this.device, 'points.csv'), 'text/csv', pointsCsv(this.device)));
     on('compare', 'submit', () => this.work(() => this.compare()));
     on('save-comparison', 'click', () => saveFile('comparison.csv', 'text/csv', this.comparisonCsv));
@@ -47,7 +49,7 @@ class App {
     element('files').addEventListener('change', (event) => {
       const files = [...event.target.files];
       event.target.value = '';
-      this.work(() => this.takeFiles(files));
+      this.work(() => this.takeFiles(files)).then(() => files.length === 1 && this.toResult());
     });
     for (const [key] of LABELS) {
       element(`label-${key}`).addEventListener('change', () => this.relabel());
@@ -67,13 +69,14 @@ class App {
       drop.classList.remove('over');
       const files = [...(e.dataTransfer?.files ?? [])];
       if (files.length > 0) {
-        this.work(() => this.takeFiles(files));
+        this.work(() => this.takeFiles(files)).then(() => files.length === 1 && this.toResult());
       }
     });
     const hasSerial = Boolean(navigator.serial);
     if (!hasSerial) {
       element('connect-serial').hidden = true;
-      element('serial-hint').textContent = 'This browser has no Web Serial, so it cannot speak with a board; Chromium, Chrome and Edge can.';
+      element('serial-hint').textContent =
+        'This browser has no Web Serial, so it cannot speak with a board; Chromium, Chrome and Edge can.';
     }
   }
 
@@ -104,6 +107,15 @@ class App {
     element('work').hidden = !isBusy || !element('stage').textContent;
   }
 
+  // Where somebody wants to be after it, eyes and screen reader alike.
+  toResult() {
+    if (element('problem').hidden) {
+      element('result').focus();
+    } else {
+      element('problem').scrollIntoView({block: 'center'});
+    }
+  }
+
   complain(text) {
     const place = element('problem');
     place.textContent = text;
@@ -113,7 +125,11 @@ class App {
   progress(percent, words) {
     element('stage').textContent = words;
     element('progress').value = percent;
+    const isNew = element('work').hidden && words !== '';
     element('work').hidden = words === '';
+    if (isNew) {
+      element('work').scrollIntoView({block: 'nearest'});
+    }
   }
 
   // The instrument
@@ -458,7 +474,8 @@ class App {
       choose.setAttribute('aria-label', `compare ${device.labels.device}`);
       choose.addEventListener('change', () => (choose.checked ? this.chosen.add(device.id) : this.chosen.delete(device.id)));
       const figures = device.report ? figuresOf(device.report)?.rows[0] : null;
-      return [choose, device.labels.device, device.labels.serial, figures ? `${figures[1]} ± ${figures[2]}` : '–', device.source,
+      const figure = figures ? `${figures[1]} ± ${figures[2]}` : '–';
+      return [choose, device.labels.device, device.labels.serial, figure, device.source,
         this.makeButton('Show', device, () => {
           this.showDevice(device);
           this.work(() => this.hand(device));
@@ -512,14 +529,19 @@ class App {
     place.hidden = false;
     place.replaceChildren();
     const unit = rankedBy === 'energy' ? 'V² s' : '% of S a';
-    const rows = ranked.map((device) => ({name: [device.device ?? device.file, device.serial].filter(Boolean).join(' '), value: device.value,
-      low: device.interval?.[0] ?? null, high: device.interval?.[1] ?? null, bound: device.bound ?? null}));
+    const rows = ranked.map((device) => ({
+      name: [device.device ?? device.file, device.serial].filter(Boolean).join(' '),
+      value: device.value,
+      low: device.interval?.[0] ?? null, high: device.interval?.[1] ?? null,
+      bound: device.bound ?? null,
+    }));
     const order = addTo(place, 'ol', 'ranking');
     ranked.forEach((device, i) => {
       const rank = device.rank_best === device.rank_worst ? `${device.rank_best}` : `${device.rank_best}–${device.rank_worst}`;
       addTo(order, 'li').textContent = `${rank}: ${rows[i].name}, ${shown(device.value)} ${unit}`;
     });
-    addTo(place, 'p', 'hint').textContent = 'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties.';
+    addTo(place, 'p', 'hint').textContent =
+      'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties.';
     drawRanking(addTo(place, 'div', 'plot'), rows, unit);
     const pre = addTo(place, 'pre', 'report');
     pre.tabIndex = 0;

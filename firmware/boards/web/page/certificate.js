@@ -18,6 +18,9 @@ function setCertificate(place, device) {
   LABELS.slice(1).forEach(([key, name]) => row(name, device.labels[key]));
   row('Points', [device.source, device.understanding].filter(Boolean).join(': '));
   row('Instrument', device.instrument);
+  for (const [name, value] of conditionsOf(device.report)) {
+    row(name, value);
+  }
   setFigures(place, device);
   for (const [kind, className] of [['WARNING', 'warning'], ['Note', 'note']]) {
     for (const text of remarksOf(device.report, kind)) {
@@ -43,13 +46,14 @@ function setCertificate(place, device) {
 function setFigures(place, device) {
   const figures = figuresOf(device.report);
   if (device.isPartial) {
-    addTo(place, 'p', 'warning').textContent = 'The sweep broke off before the uncertainties of its points were known. Save points.csv, ' +
-      'and read it as a table with an uncertainty of your own.';
+    addTo(place, 'p', 'warning').textContent = 'The sweep broke off before the uncertainties of its points were known. ' +
+      'Save points.csv, and read it as a table with an uncertainty of your own.';
     return;
   }
   if (!figures || figures.rows.length === 0) {
     const {fit} = device;
-    const known = fit ? ` The points give the sensitivity alone: S = ${shown(fit.S, 6)} V/(m/s²), U = ${shown(2 * fit.uS, 2)} (k = 2).` : '';
+    const found = fit ? `S = ${shown(fit.S, 6)} V/(m/s²), U = ${shown(2 * fit.uS, 2)} (k = 2)` : '';
+    const known = fit ? ` The points give the sensitivity alone: ${found}.` : '';
     addTo(place, 'p', 'warning').textContent = `There are no figures for this device.${known}`;
     return;
   }

@@ -106,7 +106,8 @@ class Job {
     const times = Array.from({length: IMPULSE_POINTS + 1}, (_, i) => Number(((i * length) / IMPULSE_POINTS).toPrecision(6)));
     const values = [];
     for (let i = 0; i < times.length; i += IMPULSE_BATCH) {
-      values.push(...(await this.scpi.ask(`CALC:IMP? ${times.slice(i, i + IMPULSE_BATCH).join(',')}`, SLOW_MS)).split(',').map(Number));
+      const query = `CALC:IMP? ${times.slice(i, i + IMPULSE_BATCH).join(',')}`;
+      values.push(...(await this.scpi.ask(query, SLOW_MS)).split(',').map(Number));
     }
     return times.map((t, i) => [t, values[i]]);
   }

@@ -33,13 +33,14 @@ function responsePicture(points, model) {
     const curve = Array.from({length: RESPONSE_STEPS + 1}, (_, i) => from * factor ** i);
     amplitude.push({name: 'fitted', kind: 'line', points: curve.map((f) => [f, modelResponse(model, f)[0]])});
     phase.push({name: 'fitted', kind: 'line', points: curve.map((f) => [f, modelResponse(model, f)[1]])});
-    panels.push({title: 'measured over fitted', label: 'deviation', unit: '%', zero: true, series: [{name: 'measured over fitted', kind: 'points',
-      points: points.map((p) => {
-        const fitted = modelResponse(model, p[0])[0];
-        const off = 100 * (p[1] / fitted - 1);
-        const room = (100 * p[3]) / fitted;
-        return [p[0], off, off - room, off + room];
-      })}]});
+    const deviations = points.map((p) => {
+      const fitted = modelResponse(model, p[0])[0];
+      const off = 100 * (p[1] / fitted - 1);
+      const room = (100 * p[3]) / fitted;
+      return [p[0], off, off - room, off + room];
+    });
+    panels.push({title: 'measured over fitted', label: 'deviation', unit: '%', zero: true,
+      series: [{name: 'measured over fitted', kind: 'points', points: deviations}]});
   }
   return {title: 'Frequency response', note: 'Bars are ± U (k = 2).', x: {label: 'frequency', unit: 'Hz', isLog: true}, panels};
 }
@@ -64,12 +65,13 @@ function signalPicture(results) {
     add('worst signal in band, with the delay', band.switch_times);
   }
   add("worst signal of the paper's figure", energy.switch_times);
-  return {title: 'The signals that cause the largest errors', note: 'Each panel has one of them; none within ±a is known to be worse.',
+  return {title: 'The signals that cause the largest errors',
+    note: 'Each panel has one of them; none within ±a is known to be worse.',
     x: {label: 'time', unit: 'ms'}, panels};
 }
 
 function impulsePicture(impulse) {
-  return {title: 'Impulse response of the error', note: 'Sensor minus filter.', x: {label: 'time', unit: 'ms'},
+  return {title: 'Impulse response of the error', x: {label: 'time', unit: 'ms'},
     panels: [{label: 'k', unit: 'V/(m/s)', zero: true,
       series: [{name: 'sensor minus filter', kind: 'line', points: impulse.map(([t, k]) => [1e3 * t, k])}]}]};
 }
@@ -91,7 +93,8 @@ function drawRanking(place, rows, unit) {
   const [, most] = rangeOf(rows.flatMap((r) => [r.value, r.high ?? r.value, r.bound ?? r.value]), false);
   const x = new Scale(0, most, false, left, width - RIGHT);
   const names = rows.map((r) => `${r.name} ${shown(r.value)}`).join('; ');
-  const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': `Figures in ${unit}: ${names}`});
+  const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
+    'aria-label': `Figures in ${unit}: ${names}`});
   for (const tick of x.ticks(Math.floor(width / 110))) {
     svgElement('line', {x1: x.at(tick), x2: x.at(tick), y1: 4, y2: height - 38, class: 'grid'}, svg);
     svgElement('text', {x: x.at(tick), y: height - 22, 'text-anchor': 'middle'}, svg).textContent = shown(tick);

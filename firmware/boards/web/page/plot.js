@@ -25,7 +25,7 @@ function shown(value, digits = 4) {
   const size = Math.abs(value);
   if (value !== 0 && (size < 1e-3 || size >= 1e6)) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-    const raised = [...exponent.replace('+', '')].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('');
+    const raised = [...exponent.replace('+', '')].map((c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
     return `${mantissa.replace('-', '−')} × 10${raised}`;
   }
   return String(Number(value.toPrecision(digits))).replace('-', '−');
@@ -166,7 +166,8 @@ class Plot {
             columns.push(new Map(series.points.map((point) => [point[0], point[1]])));
           }
         }
-        const rows = this.xs.map((value) => [shown(value, 6), ...columns.map((c) => (c.has(value) ? shown(c.get(value), 6) : ''))]);
+        const cell = (column, value) => (column.has(value) ? shown(column.get(value), 6) : '');
+        const rows = this.xs.map((value) => [shown(value, 6), ...columns.map((column) => cell(column, value))]);
         details.append(makeTable(head, rows));
       }
     });

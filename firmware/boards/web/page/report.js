@@ -49,6 +49,21 @@ function figuresOf(report) {
     words: section.lines.filter((line) => line.trim().split(/\s{2,}/).length === 1).map((line) => line.trim()).join(' ')};
 }
 
+const CONDITIONS = ['Reference filter', 'Filter gain', 'Time T', 'Limit a', 'Criterion'];
+
+// What the figures hold for, as [name, value].
+function conditionsOf(report) {
+  const lines = sectionOf(report, 'WHAT WAS PUT IN')?.lines ?? [];
+  return lines.map((line) => [line.slice(0, VALUE_COLUMN).trim(), line.slice(VALUE_COLUMN)])
+    .filter(([name]) => CONDITIONS.includes(name));
+}
+
+// A name, or none in further lines of one value, and the value from its column on; a table has more columns than that.
+function isRowWithValue(line) {
+  const hasValue = line.length > VALUE_COLUMN && line[VALUE_COLUMN] !== ' ' && line.slice(VALUE_COLUMN - 2, VALUE_COLUMN) === '  ';
+  return hasValue && /^ {2}(\S| {26})/.test(line) && !/^ {2}\S.*\S {2,}\S.* {2,}\S.* {2,}\S/.test(line);
+}
+
 // A section as rows of name and value, tables and paragraphs; not its warnings and notes, which stand elsewhere.
 function setSection(section) {
   const part = document.createElement('section');
@@ -60,8 +75,7 @@ function setSection(section) {
   let text = null;
   let inRemark = false;
   for (const line of section.lines) {
-    const isRow = line.length > VALUE_COLUMN && line[VALUE_COLUMN] !== ' ' && line.slice(VALUE_COLUMN - 2, VALUE_COLUMN) === '  ' &&
-      /^  (\S| {26})/.test(line) && !/^ {2}\S.*\S {2,}\S.* {2,}\S.* {2,}\S/.test(line);
+    const isRow = isRowWithValue(line);
     if (isRow && !inRemark) {
       list ??= addTo(part, 'dl', 'rows');
       text = null;
