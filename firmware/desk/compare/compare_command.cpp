@@ -174,9 +174,9 @@ std::string help_on_compare() {
 Ranks devices by how wrong they can get, from the results.json of emax report,
 all with the same filter, T, criterion and delay taken out. S and a may differ,
 but for --by energy: since a is the number of S by default, give one --limit to
-all reports then. Two devices share ranks where the uncertainties do not tell them apart. A
-device whose fit warns, or of a simulated bench, is marked and told apart from
-no other.
+all reports then. Two devices share ranks where the uncertainties do not tell
+them apart. A device whose fit warns, or of a simulated bench, is marked and
+told apart from no other.
 )" + help_on(syntax_of(options).options);
 }
 
