@@ -190,10 +190,15 @@ class Bench(PageTest):
         expected = subprocess.run([PROGRAM, "scpi"], input=f"{script}\n", capture_output=True, text=True, check=True).stdout
         report = self.saved("save-report")
         self.assertIn(report.split("\n\nWHAT WAS PUT IN")[1], expected)
-        self.assertTrue(report.startswith("SIMULATION: "))
+        # As the program has it, labels and all.
+        front = report.split("\nTHE FIGURES")[0]
+        labels = [f"--{key}={self.results()['labels'][key]}" for key in ["device", "date"]]
+        printed = self.succeed("report", "--trials", "1000", "--trend", "none", *labels)
+        self.assertEqual(front, printed.split("\nTHE FIGURES")[0])
         text = self.saved("save-json")
         self.assertIn(re.sub(r'  "labels": \{[^}]*\},\n', "", text), expected)
         self.assertIn("Simulation", self.text("certificate"))
+        self.assertTrue(self.browser.evaluate("document.title").startswith("Simulation - "))
         # Evaluated again from what the browser kept, it stays simulated, and the same.
         self.open()
         self.click("again")

@@ -173,6 +173,9 @@ class App {
     const scpi = new Scpi(port);
     const job = new Job(scpi, isSlow);
     try {
+      if (isSlow) {
+        await port.clear();  // Whatever somebody before has left half said.
+      }
       await scpi.tell('*CLS');
       Object.assign(this, {port, scpi, job, isSlow, ...(await job.identify())});
     } catch (error) {
@@ -244,6 +247,9 @@ class App {
     LABELS.forEach(([key]) => {
       labels[key] = element(`label-${key}`).value.trim();
     });
+    if (kind === 'sweep' && !labels.date) {
+      labels.date = new Date().toISOString().slice(0, 10);
+    }
     const ids = this.keep.get('devices') ?? [];
     const isTaken = ids.some((id) => this.keep.get(`device.${id}`)?.labels.device === labels.device);
     if (!labels.device || isTaken || kind === 'table') {
@@ -342,7 +348,7 @@ class App {
   }
 
   async sweep() {
-    const device = this.newDevice('sweep', `Sweep of ${new Date().toLocaleString()}`);
+    const device = this.newDevice('sweep', `Sweep of ${new Date().toLocaleString('sv-SE')}`);
     Object.assign(device, {source: 'sweep', isSimulated: this.isSimulated});
     const points = [];
     let plot = null;
@@ -446,7 +452,7 @@ class App {
     element('save-json').hidden = !device.json;
     element('save-csv').hidden = !device.trace;
     element('again').hidden = device.isPartial || (!device.trace && !device.model);
-    document.title = `${device.labels.device} - emax`;
+    document.title = `${isSimulatedDevice(device) ? 'Simulation - ' : ''}${device.labels.device} - emax`;
     this.markStale();
   }
 

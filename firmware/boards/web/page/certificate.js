@@ -1,9 +1,14 @@
 // A device's results as they are read and printed.
 
+function isSimulatedDevice(device) {
+  return device.isSimulated || device.json.includes('\n  "simulated": true');
+}
+
 function setCertificate(place, device) {
   place.replaceChildren();
   const results = device.json ? JSON.parse(device.json) : {};
-  if (results.simulated || device.isSimulated) {
+  place.classList.toggle('marked', isSimulatedDevice(device));
+  if (isSimulatedDevice(device)) {
     addTo(place, 'p', 'banner').textContent = 'Simulation: this bench is not real, and the figures say nothing of a real device';
   }
   const title = addTo(place, 'h3', 'device-name');

@@ -22,7 +22,8 @@ const LABELS = [
   ['note', 'Note'],
 ];
 
-const SIMULATION = 'SIMULATION: no real sensor was measured.\n';
+const SIMULATION = 'SIMULATION: no real sensor was measured.\n\n';
+const FIRST_HEADING = /\n\n(?=[A-Z][A-Z0-9 ,-]+[A-Z](?: \(.*\))?\n)/;
 
 // The labels go where the program has them; the instrument's language is ASCII, and labels are not. Points of a simulated
 // sweep stay simulated when they are evaluated again, from what the browser keeps.
@@ -31,7 +32,7 @@ function reportWithLabels(device) {
   const isUnmarked = device.isSimulated && !device.report.startsWith('SIMULATION');
   const report = isUnmarked && device.report ? SIMULATION + device.report : device.report;
   const rows = given.map(([key, name]) => `  ${name.padEnd(VALUE_COLUMN - 2)}${device.labels[key]}\n`).join('');
-  return rows ? report.replace('\n\n', () => `\n\nLABELS (as given)\n${rows}\n`) : report;
+  return rows ? report.replace(FIRST_HEADING, () => `\n\nLABELS (as given)\n${rows}\n`) : report;
 }
 
 function jsonWithLabels(device) {

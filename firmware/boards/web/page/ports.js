@@ -34,6 +34,7 @@ class SimulatedPort {
         }
         port.commands = data.commands;
         port.worker.onmessage = (event) => port.take(event.data);
+        port.worker.onerror = (event) => port.onend(`the instrument in this page has failed: ${event.message}`);
         resolve(port);
       };
       port.worker.postMessage({kind: 'start', module: heldModule('module-instrument'), device, store, pace});
