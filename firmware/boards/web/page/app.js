@@ -547,7 +547,8 @@ class App {
       addTo(order, 'li').textContent = `${rank}: ${rows[i].name}, ${shown(device.value)} ${unit}`;
     });
     addTo(place, 'p', 'hint').textContent =
-      'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties.';
+      'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties. Dot: found; bar: interval; stroke: ' +
+      'none exceeds.';
     drawRanking(addTo(place, 'div', 'plot'), rows, unit);
     const pre = addTo(place, 'pre', 'report');
     pre.tabIndex = 0;

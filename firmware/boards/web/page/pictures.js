@@ -86,7 +86,12 @@ function trendPicture(trend) {
 
 // Values with their intervals, a row each. rows: {name, value, low, high, bound}, in percent of S a.
 function drawRanking(place, rows, unit) {
-  const width = Math.max(280, place.clientWidth || 640);
+  const draw = () => place.replaceChildren(rankingOf(rows, unit, Math.max(280, place.clientWidth || 640)));
+  new ResizeObserver(draw).observe(place);
+  draw();
+}
+
+function rankingOf(rows, unit, width) {
   const row = 34;
   const height = rows.length * row + 46;
   const left = Math.min(180, width * 0.34);
@@ -112,7 +117,6 @@ function drawRanking(place, rows, unit) {
     }
     svgElement('circle', {cx: x.at(r.value), cy: y, r: 4, class: 'dot s0'}, svg);
   });
-  svgElement('text', {x: (left + width) / 2, y: height - 4, 'text-anchor': 'middle', class: 'axis-name'}, svg).textContent =
-    `${unit}; dot: found, bar: interval, stroke: none exceeds`;
-  place.append(svg);
+  svgElement('text', {x: (left + width) / 2, y: height - 4, 'text-anchor': 'middle', class: 'axis-name'}, svg).textContent = unit;
+  return svg;
 }
