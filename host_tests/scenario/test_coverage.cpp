@@ -1,10 +1,11 @@
-// Five hundred benches, each with its own truth and noise: do the intervals of the fit, and that of
+// Hundreds of benches, each with its own truth and noise: do the intervals of the fit, and that of
 // E, contain the truth as often as they say?
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <gtest/gtest.h>
+#include <string>
 #include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
@@ -27,22 +28,49 @@ namespace {
 
 using emax::Status;
 
-constexpr std::uint64_t kBenches = 500;
-// Of a binomial distribution with 500 trials of 0.95, 99.9 % lie within.
-constexpr int kFewest = 458;
-constexpr int kMost = 489;
+constexpr std::uint64_t kBenches = 200;
+// Of a binomial distribution with 200 trials of 0.95, 99.9 % lie within.
+constexpr int kFewest = 179;
+constexpr int kMost = 198;
+/// No constant of the budget was chosen by benches of these seeds.
+constexpr std::uint64_t kFirstSeed = 101;
 constexpr double kCoverageFactor = 1.96;
 
 struct Inside {
-  std::array<int, 3> of = {};  // S, f0, beta.
+  std::array<int, 3> of = {};          // S, f0, beta.
+  std::array<double, 3> squares = {};  // Of the errors over u.
 };
 
 void count(const emax::WlspFit& fit, const emax::sim::Device& truth, Inside& inside) {
-  inside.of[0] +=
-      std::fabs(fit.model.sensitivity - truth.sensitivity) < kCoverageFactor * fit.u_sensitivity;
-  inside.of[1] += std::fabs(fit.model.natural_frequency_hz - truth.natural_frequency_hz) <
-                  kCoverageFactor * fit.u_natural_frequency_hz;
-  inside.of[2] += std::fabs(fit.model.damping - truth.damping) < kCoverageFactor * fit.u_damping;
+  const double errors[] = {
+      (fit.model.sensitivity - truth.sensitivity) / fit.u_sensitivity,
+      (fit.model.natural_frequency_hz - truth.natural_frequency_hz) / fit.u_natural_frequency_hz,
+      (fit.model.damping - truth.damping) / fit.u_damping};
+  for (std::size_t i = 0; i < 3; ++i) {
+    inside.of[i] += std::fabs(errors[i]) < kCoverageFactor;
+    inside.squares[i] += errors[i] * errors[i];
+  }
+}
+
+/// A sweep on a bench, fitted.
+const emax::WlspFit& fitted(const emax::sim::BenchSettings& settings,
+                            const emax::app::SweepSettings& stated) {
+  static emax::sim::SimBench bench;
+  static emax::app::SweepResults results;
+  static emax::app::SweepWorkspace work;
+  static emax::FrequencyResponse response;
+  static emax::Wlsp wlsp;
+  emax::app::Sweep sweep(results, work, bench);
+  EXPECT_EQ(bench.configure(settings), Status::kOk);
+  EXPECT_EQ(sweep.start(stated), Status::kOk);
+  while (!sweep.done()) {
+    sweep.step();
+  }
+  EXPECT_EQ(results.status, Status::kOk)
+      << emax::explain(results.status) << " seed " << settings.seed;
+  EXPECT_EQ(results.copy_to(response), Status::kOk);
+  EXPECT_EQ(wlsp.fit(response), Status::kOk) << "seed " << settings.seed;
+  return wlsp.result();
 }
 
 /// The interval of E as a report states it, with as few trials as there may be: their scatter of
@@ -137,7 +165,7 @@ emax::CoverageInterval stated_interval(const emax::FrequencyResponse& response) 
   return results.uncertainty.symmetric;
 }
 
-TEST(Coverage, OfFiveHundredBenches) {
+TEST(Coverage, OfTwoHundredBenches) {
   static emax::sim::SimBench bench;
   static emax::app::SweepResults results;
   static emax::app::SweepWorkspace work;
@@ -149,7 +177,7 @@ TEST(Coverage, OfFiveHundredBenches) {
   int with_energy = 0;
   double chi2 = 0.0;
   std::uint64_t frames = 0;
-  for (std::uint64_t seed = 1; seed <= kBenches; ++seed) {
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kBenches; ++seed) {
     emax::sim::BenchSettings settings;
     settings.seed = seed;
     ASSERT_EQ(bench.configure(settings), Status::kOk);
@@ -166,7 +194,7 @@ TEST(Coverage, OfFiveHundredBenches) {
     chi2 += wlsp.result().chi2;
 
     Energies energies(wlsp.result());
-    if (seed == 1) {
+    if (seed == kFirstSeed) {
       const emax::CoverageInterval stated = stated_interval(response);
       const emax::CoverageInterval here = energies.interval(wlsp.result(), 0);
       EXPECT_EQ(stated.low, here.low) << "these are not the intervals of a report";
@@ -193,10 +221,10 @@ TEST(Coverage, OfFiveHundredBenches) {
   EXPECT_LT(without_common.of[0], kFewest / 2);
   EXPECT_EQ(without_common.of[1], with_common.of[1]);
   EXPECT_EQ(without_common.of[2], with_common.of[2]);
-  // 81 degrees of freedom, variance 162 each, four standard deviations of the mean of 500. The
+  // 81 degrees of freedom, variance 162 each, four standard deviations of the mean of 200. The
   // noise is itself known to sqrt(1/288) only, which moves chi-square by 10 from bench to bench,
   // and by half of one in the mean.
-  EXPECT_NEAR(chi2 / static_cast<double>(kBenches), 81.0, 4.0 * std::sqrt(262.0 / 500.0) + 0.6);
+  EXPECT_NEAR(chi2 / static_cast<double>(kBenches), 81.0, 4.0 * std::sqrt(262.0 / 200.0) + 0.6);
   RecordProperty("inside_S", with_common.of[0]);
   RecordProperty("inside_f0", with_common.of[1]);
   RecordProperty("inside_beta", with_common.of[2]);
@@ -212,16 +240,11 @@ TEST(Coverage, OfFiveHundredBenches) {
 
 // On a quiet bench it is not noise that limits the estimates, but what no scatter shows.
 TEST(Coverage, OfQuietBenches) {
-  constexpr int kQuietBenches = 100;
-  // Of a binomial distribution with 100 trials of 0.95, 99.9 % are not below. More is no fault: the
-  // converters' rounding is taken at its worst.
-  constexpr int kFewestOfHundred = 87;
-  static emax::sim::SimBench bench;
-  static emax::app::SweepResults results;
-  static emax::app::SweepWorkspace work;
-  emax::app::Sweep sweep(results, work, bench);
-  static emax::FrequencyResponse response;
-  static emax::Wlsp wlsp;
+  constexpr std::uint64_t kQuietBenches = 40;
+  // Of a binomial distribution with 40 trials of 0.95, 99.9 % are not below.
+  constexpr int kFewestQuiet = 33;
+  // An interval that is twice or thrice too wide, as one is that counts something twice, has less.
+  constexpr double kLeastSquare = 0.16;
   struct Case {
     double noise_v;
     double clock_ppm;
@@ -236,35 +259,76 @@ TEST(Coverage, OfQuietBenches) {
                         {1e-4, 20.0, 0.05, 0.05, 2e-8}};
   for (const Case& c : cases) {
     Inside inside;
-    for (std::uint64_t seed = 1; seed <= kQuietBenches; ++seed) {
-      emax::sim::BenchSettings settings;
+    emax::sim::BenchSettings settings;
+    settings.noise_v = c.noise_v;
+    settings.clock_expanded_ppm = c.clock_ppm;
+    settings.crosstalk_expanded_percent = c.crosstalk_percent;
+    settings.linearity_expanded_percent = c.linearity_percent;
+    settings.skew_expanded_s = c.skew_s;
+    emax::app::SweepSettings stated = emax::app::default_sweep_settings();
+    stated.clock_expanded_ppm = c.clock_ppm;
+    stated.crosstalk_expanded_percent = c.crosstalk_percent;
+    stated.linearity_expanded_percent = c.linearity_percent;
+    stated.skew_expanded_s = c.skew_s;
+    for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kQuietBenches; ++seed) {
       settings.seed = seed;
-      settings.noise_v = c.noise_v;
-      settings.clock_expanded_ppm = c.clock_ppm;
-      settings.crosstalk_expanded_percent = c.crosstalk_percent;
-      settings.linearity_expanded_percent = c.linearity_percent;
-      settings.skew_expanded_s = c.skew_s;
-      emax::app::SweepSettings stated = emax::app::default_sweep_settings();
-      stated.clock_expanded_ppm = c.clock_ppm;
-      stated.crosstalk_expanded_percent = c.crosstalk_percent;
-      stated.linearity_expanded_percent = c.linearity_percent;
-      stated.skew_expanded_s = c.skew_s;
-      ASSERT_EQ(bench.configure(settings), Status::kOk);
-      ASSERT_EQ(sweep.start(stated), Status::kOk);
-      while (!sweep.done()) {
-        sweep.step();
-      }
-      ASSERT_EQ(results.status, Status::kOk) << "seed " << seed;
-      ASSERT_EQ(results.copy_to(response), Status::kOk);
-      ASSERT_EQ(wlsp.fit(response), Status::kOk) << "seed " << seed;
-      count(wlsp.result(), bench.truth().device, inside);
+      count(fitted(settings, stated), settings.device, inside);
     }
-    for (const int of_one : inside.of) {
-      EXPECT_GE(of_one, kFewestOfHundred) << "noise " << c.noise_v << " V, clock " << c.clock_ppm;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double square = inside.squares[i] / static_cast<double>(kQuietBenches);
+      EXPECT_GE(inside.of[i], kFewestQuiet) << "noise " << c.noise_v << " V, parameter " << i;
+      EXPECT_GE(square, kLeastSquare) << "noise " << c.noise_v << " V, parameter " << i;
+      std::printf("noise %g V, clock %g ppm, parameter %d: inside %d of %d, errors %.2f u\n",
+                  c.noise_v, c.clock_ppm, static_cast<int>(i), inside.of[i],
+                  static_cast<int>(kQuietBenches), std::sqrt(square));
     }
-    std::printf("noise %g V, clock %g ppm: inside S %d, f0 %d, beta %d of %d\n", c.noise_v,
-                c.clock_ppm, inside.of[0], inside.of[1], inside.of[2], kQuietBenches);
   }
+}
+
+// Sensors of 1e-4 to 100 V/(m/s^2) behind conditioners with gains of 1 to 1000 and a front end that
+// takes what comes, in channels that differ by 3 % and 3 us, as a loopback has found.
+TEST(Coverage, OfSensorsGainsAndCorrections) {
+  constexpr int kOfEach = 15;
+  // Of a binomial distribution with 60 trials of 0.95, 99.9 % are not below.
+  constexpr int kFewestOfSixty = 51;
+  Inside inside;
+  std::uint64_t seed = kFirstSeed;
+  for (const double sensitivity : {1e-4, 0.01, 1.0, 100.0}) {
+    for (int i = 0; i < kOfEach; ++i) {
+      emax::sim::BenchSettings settings;
+      settings.seed = seed++;
+      settings.device.sensitivity = sensitivity;
+      // From 1 to 1000, and 0.1 V/(m/s^2) or more behind it; 1 to 30 for the reference.
+      const double least = sensitivity < 0.1 ? 0.1 / sensitivity : 1.0;
+      settings.device_gain = least * std::pow(1000.0 / least, i / (kOfEach - 1.0));
+      settings.reference_gain = std::pow(30.0, i / (kOfEach - 1.0));
+      const double volts = 2.0 * sensitivity * settings.device_gain;
+      settings.front_end.device_v = volts > 10.0 ? volts : 10.0;
+      settings.front_end.drive_v = 5.0;
+      settings.ratio = 1.03;
+      settings.gain_expanded_percent = std::hypot(0.1, 0.05);
+      settings.skew_s = 3e-6;
+      settings.skew_expanded_s = 2e-8;
+      emax::app::SweepSettings stated = emax::app::default_sweep_settings();
+      stated.expected_sensitivity = 1.1 * sensitivity;
+      stated.device_gain = settings.device_gain;
+      stated.reference_gain = settings.reference_gain;
+      stated.device_full_scale_v = settings.front_end.device_v;
+      stated.drive_full_scale_v = settings.front_end.drive_v;
+      stated.ratio_correction = settings.ratio;
+      stated.ratio_expanded_percent = 0.05;
+      stated.skew_s = settings.skew_s;
+      stated.skew_expanded_s = settings.skew_expanded_s;
+      SCOPED_TRACE(std::to_string(sensitivity) + " V/(m/s^2), gain " +
+                   std::to_string(settings.device_gain));
+      count(fitted(settings, stated), settings.device, inside);
+    }
+  }
+  for (const int of_one : inside.of) {
+    EXPECT_GE(of_one, kFewestOfSixty);
+  }
+  std::printf("inside: S %d, f0 %d, beta %d of %d\n", inside.of[0], inside.of[1], inside.of[2],
+              4 * kOfEach);
 }
 
 }  // namespace

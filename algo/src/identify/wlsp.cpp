@@ -490,7 +490,7 @@ Complex Wlsp::change_of(Effect effect, std::size_t index, double largest) const 
 
 // Adds what a change of 1/K at a point is in the normal equations, whose right-hand side is A^T z
 // for the whitened change z, without the common part's share of it.
-void Wlsp::add_to(NormalStep& step, std::size_t index, Complex change) const noexcept {
+void Wlsp::add_to(NormalStep& step, std::size_t index, const Complex& change) const noexcept {
   const Complex z = whiten(index, change);
   const Columns a = whitened_columns(index);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -554,7 +554,7 @@ void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
   covariance[1][1] += f0_u * f0_u;
 }
 
-Complex Wlsp::whiten(std::size_t index, Complex value) const noexcept {
+Complex Wlsp::whiten(std::size_t index, const Complex& value) const noexcept {
   const ComplexCholesky& l = factors_[index];
   const double re = value.re / l.re_re;
   return {re, (value.im - l.im_re * re) / l.im_im};

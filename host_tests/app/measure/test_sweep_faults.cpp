@@ -110,8 +110,8 @@ bool is_name_of(FaultKind fault, Status status) {
 
 /// A sweep near the limit of acceleration, with these faults; what the shaker has done is recorded
 /// by the bench, whatever the sensors tell.
-void run_near_the_limit(std::uint64_t seed, const emax::sim::Fault& one,
-                        const emax::sim::Fault& other) {
+Status run_near_the_limit(std::uint64_t seed, const emax::sim::Fault& one,
+                          const emax::sim::Fault& other) {
   BenchSettings settings;
   settings.seed = seed;
   settings.fault = one;
@@ -131,7 +131,11 @@ void run_near_the_limit(std::uint64_t seed, const emax::sim::Fault& one,
   EXPECT_EQ(run.sweep.stage, SweepStage::kFailed);
   if (other.kind == FaultKind::kNone) {
     EXPECT_TRUE(is_name_of(one.kind, run.sweep.status)) << emax::explain(run.sweep.status);
+  } else {
+    EXPECT_TRUE(is_name_of(one.kind, run.sweep.status) || is_name_of(other.kind, run.sweep.status))
+        << emax::explain(run.sweep.status);
   }
+  return run.sweep.status;
 }
 
 /// A fixed sequence that depends on no library: x -> 6364136223846793005 x + 1442695040888963407.
@@ -151,7 +155,7 @@ TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration) {
   for (const Expectation& one : kFaults) {
     for (int i = 0; i < 20; ++i) {
       const std::uint64_t seed = times.next();
-      run_near_the_limit(seed, {one.fault, times.next()}, {});
+      (void)run_near_the_limit(seed, {one.fault, times.next()}, {});
     }
   }
 }
@@ -163,9 +167,28 @@ TEST(SweepFaults, AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration) {
       for (int i = 0; i < 20 && one.fault < other.fault; ++i) {
         const std::uint64_t seed = times.next();
         const std::uint64_t first = times.next();
-        run_near_the_limit(seed, {one.fault, first}, {other.fault, times.next()});
+        (void)run_near_the_limit(seed, {one.fault, first}, {other.fault, times.next()});
       }
     }
+  }
+}
+
+TEST(SweepFaults, ChannelThatGetsStuckInASecondLookIsStuck) {
+  // They once were a DC drift: the mean of words that have just got stuck is another one.
+  struct Case {
+    std::uint64_t seed;
+    std::uint64_t stuck_at;
+    emax::sim::Fault other;
+  };
+  const Case cases[] = {{523176434, 297679, {FaultKind::kSwappedChannels, 227281}},
+                        {885058587, 237358, {FaultKind::kSwappedChannels, 98752}},
+                        {868081633, 443342, {FaultKind::kSwappedChannels, 428662}},
+                        {1037403019, 332687, {FaultKind::kInvertedPolarity, 279692}},
+                        {1345090125, 167797, {FaultKind::kInvertedPolarity, 69803}}};
+  for (const Case& c : cases) {
+    const Status status =
+        run_near_the_limit(c.seed, {FaultKind::kStuckChannel, c.stuck_at}, c.other);
+    EXPECT_EQ(status, Status::kStuckChannel) << emax::explain(status);
   }
 }
 

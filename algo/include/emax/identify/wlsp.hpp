@@ -153,13 +153,13 @@ class Wlsp {
     double columns_common[3] = {};
     double common_z = 0.0;
   };
-  void add_to(NormalStep& step, std::size_t index, Complex change) const noexcept;
+  void add_to(NormalStep& step, std::size_t index, const Complex& change) const noexcept;
   void solve_step(NormalStep& step) const noexcept;
   double place_of(std::size_t index) const noexcept;
   Complex change_of(Effect effect, std::size_t index, double largest) const noexcept;
   void add_effect(Effect effect, double largest, double (&covariance)[3][3]) const noexcept;
   void add_shared(double (&covariance)[3][3]) const noexcept;
-  Complex whiten(std::size_t index, Complex value) const noexcept;
+  Complex whiten(std::size_t index, const Complex& value) const noexcept;
   Columns whitened_columns(std::size_t index) const noexcept;
   Complex whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept;
   double chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept;

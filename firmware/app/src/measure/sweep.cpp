@@ -12,6 +12,7 @@ namespace {
 
 // A shaker that a fault or a stop has left swinging comes to rest.
 constexpr double kRest_s = 2.0;
+constexpr double kHiddenShare = 0.5;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
@@ -397,6 +398,8 @@ void Sweep::share_effects(double check_change) noexcept {
   results.shared = shared_effects(results.settings, work_.format_.sample_rate_hz,
                                   squares > 0.0 ? sqrt(squares) : 0.0, ratio_factor(), highest_hz,
                                   sqrt(device2) / work_.scales_.device_v);
+  // What the noise of two checks hides may have drifted all the same.
+  const double drift = sqrt(std::max(squares, kHiddenShare * check_u * check_u));
   for (std::size_t i = 0; i < count; ++i) {
     time += time_of(results.table[i].point.frequency_hz, results.shared.corner_hz);
   }
@@ -412,6 +415,7 @@ void Sweep::share_effects(double check_change) noexcept {
     point.u_amplitude = sqrt(u * u + at.re * at.re) * point.amplitude;
     point.u_phase_rad = sqrt(u * u + at.im * at.im);
   }
+  results.shared.drift = drift;
 }
 
 }  // namespace emax::app

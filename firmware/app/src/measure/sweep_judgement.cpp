@@ -18,9 +18,10 @@ constexpr std::uint32_t kMaxTries = 12;
 constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
 constexpr double kDistortedShare = 0.1;  // An error above,
 constexpr double kFlaggedShare = 0.03;   // flagged above.
-constexpr double kOffsetShare = 0.02;    // Of full scale, against the silence.
-constexpr double kTurnedRound = 0.9;     // Cosine of the angle to half a turn,
-constexpr double kFlatWithin = 1.2;      // and the largest factor to the check's ratio.
+constexpr std::uint64_t kStuckWords = 128;
+constexpr double kOffsetShare = 0.02;  // Of full scale, against the silence.
+constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
+constexpr double kFlatWithin = 1.2;    // and the largest factor to the check's ratio.
 constexpr double kLargestJump2 =
     64.0;  // Of the square of the ratio, from one frequency to the next.
 constexpr std::uint32_t kMostRingingLooks = 2;  // After the first.
@@ -292,7 +293,9 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   const double doubt_v = reference.doubt_v + device.doubt_v;
   if (!work_.target_.was_overrange && (within_v > kWanderShare * full_scale_v + doubt_v ||
                                        since_silence_v > kOffsetShare * full_scale_v + doubt_v)) {
-    return Status::kDcDrift;
+    // The mean of words that have just got stuck is another one, too.
+    return work_.device_monitor_.equal_words() > kStuckWords ? Status::kStuckChannel
+                                                             : Status::kDcDrift;
   }
   const double samples = static_cast<double>(work_.target_.repeat_frames);
   // Above a sharp resonance there is little beside what rings on: it is judged by what the device

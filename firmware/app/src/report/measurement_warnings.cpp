@@ -5,7 +5,8 @@ namespace emax::app {
 namespace {
 
 constexpr double kMuchChange = 0.01;
-constexpr double kNearSheet2 = 1.44;  // A factor of 1.2, squared.
+constexpr double kBeyondNoise = 10.0;  // Of the lowest frequency, whose record is the longest.
+constexpr double kNearSheet2 = 1.44;   // A factor of 1.2, squared.
 
 bool is_off_sheet(double found2, double sheet) noexcept {
   const double sheet2 = sheet * sheet;
@@ -19,7 +20,9 @@ bool contradicts(Warning warning, const SweepResults& sweep) noexcept {
     return sweep.status != Status::kOk;
   }
   if (warning == Warning::kChange) {
-    return sweep.shared.drift > kMuchChange;
+    const Span<const SweepPoint> points = sweep.points();
+    return !points.empty() && sweep.shared.drift > kMuchChange &&
+           sweep.shared.drift > kBeyondNoise * points[0].budget.noise;
   }
   return is_off_sheet(norm(sweep.check_before), sweep.settings.expected_sensitivity);
 }
