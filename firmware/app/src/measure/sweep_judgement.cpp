@@ -24,15 +24,15 @@ constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
 constexpr double kFlatWithin = 1.2;    // and the largest factor to the check's ratio.
 constexpr double kLargestJump2 =
     64.0;  // Of the square of the ratio, from one frequency to the next.
-constexpr std::uint32_t kMostRingingLooks = 2;  // After the first.
-constexpr double kRingingScale = 8.0;           // Of the settling time, for each of them,
-constexpr double kLookShare = 0.25;             // and of the drive, for the last.
-constexpr double kMostHum = 0.1;                // Of the ratio, at a point,
-constexpr double kMostHumOfCheck = 0.02;        // and at the check, which others are judged by.
-constexpr double kSwappedShare = 0.16;          // Of the squares of the distances to both.
-constexpr double kForeseen = 0.09;              // Square of a share of the 1/K that is expected,
-constexpr double kShortestBase = 0.1;           // Of the square of the frequency, for a slope.
-constexpr double kForeseenFlat = 1e-4;          // and of that at the check frequency.
+constexpr std::uint32_t kMostLooksAgain = 2;  // After the first.
+constexpr double kRingingScale = 8.0;         // Of the settling time, for each of them,
+constexpr double kLookShare = 0.25;           // and of the drive, for the last.
+constexpr double kMostHum = 0.1;              // Of the ratio, at a point,
+constexpr double kMostHumOfCheck = 0.02;      // and at the check, which others are judged by.
+constexpr double kSwappedShare = 0.16;        // Of the squares of the distances to both.
+constexpr double kForeseen = 0.09;            // Square of a share of the 1/K that is expected,
+constexpr double kShortestBase = 0.1;         // Of the square of the frequency, for a slope.
+constexpr double kForeseenFlat = 1e-4;        // and of that at the check frequency.
 
 // A device of second order never leads. Sensors with a high pass do, by less than a degree where
 // it matters; a skew that was set wrong by 1 us adds to it.
@@ -322,7 +322,9 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
 void Sweep::suspect(Status status) noexcept {
   SweepWorkspace::Target& target = work_.target_;
   const bool may_ring = status == Status::kDistorted && results_.stage != SweepStage::kCheckBefore;
-  if (target.looks >= (may_ring ? kMostRingingLooks : 1)) {
+  // A second fault within the second look moves the mean, too.
+  const bool is_patient = may_ring || status == Status::kDcDrift;
+  if (target.looks >= (is_patient ? kMostLooksAgain : 1)) {
     fail(status);
     return;
   }
@@ -331,7 +333,7 @@ void Sweep::suspect(Status status) noexcept {
   if (may_ring) {
     target.settle_scale *= kRingingScale;
     // A level that full scale has made little needs its steps.
-    if (target.looks == kMostRingingLooks && !is_level_little()) {
+    if (target.looks == kMostLooksAgain && !is_level_little()) {
       work_.level_scale_ *= kLookShare;
       drive_v *= kLookShare;
     }
