@@ -2,7 +2,6 @@
 #include "emax/app/measure/loopback.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "emax/app/measure/sweep_budget.hpp"
 #include "emax/base/complex.hpp"
@@ -62,21 +61,19 @@ void LoopbackRun::step(hal::AnalogStream& stream) noexcept {
   if (done()) {
     return;
   }
-  std::array<hal::Word, hal::kMaxBlockFrames> words;
-  std::array<hal::Frame, hal::kMaxBlockFrames> drive;
-  std::array<hal::Frame, hal::kMaxBlockFrames> response;
   const std::size_t count = format_.block_frames;
-  drive_.fill(Span<hal::Word>(words).first(count));
-  const hal::Exchange exchange = stream.exchange(Span<const hal::Word>(words).first(count),
-                                                 Span<hal::Frame>(response).first(count));
+  const Span<hal::Word> words = Span<hal::Word>(words_).first(count);
+  const Span<hal::Frame> response = Span<hal::Frame>(response_).first(count);
+  drive_.fill(words);
+  const hal::Exchange exchange = stream.exchange(words, response);
   if (exchange.status != Status::kOk) {
     end(exchange.status);
     return;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    drive[i] = {words[i], words[i]};
+    sent_[i] = {words[i], words[i]};
   }
-  take(Span<const hal::Frame>(drive).first(count), Span<const hal::Frame>(response).first(count));
+  take(Span<const hal::Frame>(sent_).first(count), response);
   if (done()) {
     (void)stream.stop();
   }

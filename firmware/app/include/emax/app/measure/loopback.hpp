@@ -1,6 +1,7 @@
 // Measures the front end by a wire that feeds the drive to both inputs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -39,7 +40,7 @@ struct LoopbackResults {
 ///
 /// The ratio's uncertainty is 2.87 times the standard deviation of the five (Student's t for four
 /// degrees of freedom, 95.45 %), and so is that of the skew with what the straight line of the
-/// phases leaves over. 6.5 KiB, all zero before use.
+/// phases leaves over. 7.5 KiB, all zero before use.
 class LoopbackRun {
  public:
   /// @param[in] settings Checked; of them the limits and full scales.
@@ -85,6 +86,9 @@ class LoopbackRun {
   double ratios2_ = 0.0;
   double phases2_ = 0.0;
   double phases_by_frequency_ = 0.0;
+  std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
+  std::array<hal::Frame, hal::kMaxBlockFrames> sent_ = {};  // The words in both channels.
+  std::array<hal::Frame, hal::kMaxBlockFrames> response_ = {};
   double amplitude_v_ = 0.0;
   double frequency_hz_ = 0.0;
   std::uint32_t left_ = 0;    // Frames until this stage ends.
