@@ -18,7 +18,7 @@ using app::SweepResults;
 using app::SweepSettings;
 
 constexpr std::size_t kRowFields = 8;
-constexpr std::size_t kBudgetFields = 7;
+constexpr std::size_t kBudgetFields = 8;
 
 // The numbers of an array; none if it is no array of that many.
 std::vector<double> numbers_in(const JsonValue& array, std::size_t count) {
