@@ -318,6 +318,25 @@ TEST_F(RealImage, MeasuresForTheReportOfThePc) {
   EXPECT_EQ(board->chip.findings.text(), "");
 }
 
+// A wire from the drive to both inputs: what the acceptance test of a board must answer. A
+// converter of 12 bits has steps of 0.8 mV, and half of the drive limit is some 0.8 V.
+TEST_F(RealImage, ALoopbackFindsAWireAndItsLatency) {
+  Wire wire;
+  board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, wire);
+  boot();
+  ASSERT_TRUE(answers(1.0));
+  const std::vector<double> found = numbers(ask("DIAG:LOOP?", 30.0));
+  ASSERT_EQ(found.size(), 11U) << ask("SYST:ERR:ALL?");
+  EXPECT_NEAR(found[0], 513.0, 0.05) << "frames, as the stream states";
+  EXPECT_NEAR(found[3], 1.0, 5e-3);
+  EXPECT_NEAR(found[4], 1.0, 5e-3);
+  EXPECT_NEAR(found[5], 1.0, 1e-4) << "both inputs see the same";
+  EXPECT_NEAR(found[6], 0.0, 1e-9) << "at the same instant";
+  EXPECT_EQ(found[10], 0.0);
+  EXPECT_EQ(error(), 0);
+  EXPECT_EQ(board->chip.findings.text(), "");
+}
+
 // A break is a device clear: half a message is forgotten.
 TEST_F(RealImage, ABreakClearsTheDevice) {
   boot();

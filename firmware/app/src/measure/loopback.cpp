@@ -173,14 +173,17 @@ void LoopbackRun::end_target() noexcept {
 
 bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& reference,
                            const SineFitResult& device) noexcept {
+  // Of all that look alike at this frequency, the one nearest to the stated latency.
   const double turns = angle_of(drive.phasor() / reference.phasor()) / kTwoPi;
-  results_.latency_frames = kLongestPeriod * (turns - floor(turns));
+  const auto stated = static_cast<double>(format_.latency_frames);
+  const double turns_off = turns - stated / kLongestPeriod;
+  const double off = kLongestPeriod * (turns_off - floor(turns_off + 0.5));
+  results_.latency_frames = stated + off;
   results_.reference_gain = reference.amplitude_v / drive.amplitude_v;
   results_.device_gain = device.amplitude_v / drive.amplitude_v;
   results_.distortion_percent =
       kPercent * distortion_of(reference.residual_std_v, results_.reference_noise_v,
                                reference.amplitude_v, static_cast<double>(reference.samples));
-  const double off = results_.latency_frames - static_cast<double>(format_.latency_frames);
   return is_near_one(results_.reference_gain) && is_near_one(results_.device_gain) &&
          abs(off) < kMostFramesOff;
 }
