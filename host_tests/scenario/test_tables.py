@@ -20,7 +20,7 @@ PLAIN = {"S": 1.035912, "f0": 4065.30, "beta": 0.316358}
 U_PLAIN = {"S": 0.0009, "f0": 4.04, "beta": 0.00097}
 
 
-# Light damping with wide uncertainties takes minutes of trials: these are run by hand.
+# Hundreds of draws, run by hand; test_open_damping.cpp has a few of them.
 ByHand = ProgramTest
 
 
@@ -73,6 +73,18 @@ class TablesOfOneDevice(Tables, ProgramTest):
 
     def test_a_lag_that_is_positive(self):
         self.refuse_table("lag_positive.csv", "phases lead", "a lag must be negative")
+        self.refuse(["certify", "--points", TABLES / "lag_positive.csv"], "phases lead")
+        # The same where the points scatter more than they say.
+        rows = [[f, a * (1.03 if i % 2 else 0.97), -p, ua, up] for i, (f, a, p, ua, up) in enumerate(table_rows())]
+        self.refuse(["report", "--points", self.write([TablesThereAndBack.NAMES] + [",".join(map(repr, row)) for row in rows])],
+                    "phases lead")
+
+    def test_radians_without_a_label(self):
+        rows = [[f, a, math.radians(p), ua, math.radians(up)] for f, a, p, ua, up in table_rows()]
+        lines = ["f_hz,amplitude,phase,u_amplitude,u_phase"] + [",".join(map(repr, row)) for row in rows]
+        text = self.succeed("report", "--points", self.write(lines), *QUICK)
+        self.assertIn("  Taking the phases for radians and not for degrees would bring chi2/dof from 5.6e+02 to 1: name\n", text)
+        self.assert_near_plain(self.json_of("--points", "points.csv", "--input-units", "rad", *QUICK)["model"])
 
     def test_magnitudes_alone(self):
         for name in ["magnitude_only.csv", "magnitude_only_blank.csv"]:
@@ -97,7 +109,12 @@ class TablesOfOneDevice(Tables, ProgramTest):
         self.assertAlmostEqual(results["model"]["f0"], 4073, delta=0.01)
 
 
-class TablesOfPiezos(Tables, ByHand):
+class TablesOfPiezos(Tables, ProgramTest):
+    """Light damping with wide uncertainties takes many seconds of trials, but few in so short a time; the fit is the same."""
+
+    def fit(self, name, *options):
+        return super().fit(name, *([] if "--time" in options else ["--time", "0.00005"]), *options)
+
     def test_decimal_commas(self):
         for name, form in [("tabs_decimal_comma.csv", "tabs"), ("semicolons_decimal_comma.csv", "semicolons")]:
             results = self.fit(name)
@@ -117,15 +134,27 @@ class TablesOfPiezos(Tables, ByHand):
         results = self.fit("mv_per_g.csv")
         # 100.07 mV/g.
         self.assertAlmostEqual(results["model"]["S"], 0.10007 / 9.80665, delta=2e-7)
-        self.assertAlmostEqual(results["energy"]["E"], 2.862e-8, delta=1e-11)
+        model = results["model"]
+        device = ",".join(repr(model[name]) for name in ["S", "f0", "beta"])
+        energy = self.json_of("--model", device, *QUICK, "--time", "0.002")["energy"]
+        self.assertAlmostEqual(energy["E"], 2.862e-8, delta=1e-11)
 
     def test_radians(self):
         degrees, radians = self.fit("phase_deg.csv")["model"], self.fit("phase_rad.csv")["model"]
         self.assertAlmostEqual(degrees["beta"], 0.0238, delta=1e-4)
         self.assertAlmostEqual(radians["beta"], degrees["beta"], delta=1e-5)  # Three to six digits in the file.
 
+    def test_radians_without_a_label(self):
+        rows = (TABLES / "phase_rad.csv").read_text().replace("_rad", "").splitlines()
+        text = self.succeed("report", "--points", self.write(rows), *QUICK, "--time", "0.00005")
+        self.assertIn("Note: No unit of the phase is named, and degrees were taken. As radians they fit as well, with "
+                      "beta =\n  0.0238: name their unit in the header, or by --input-units.", text)
+        self.assertNotIn("No unit of the phase", self.succeed("report", "--points", self.write(rows), *QUICK, "--time",
+                                                              "0.00005", "--input-units", "deg"))
+
     def test_inverted(self):
         self.refuse_table("inverted.csv", "inverted polarity", "--invert")
+        self.refuse(["certify", "--points", TABLES / "inverted.csv"], "inverted.csv: inverted polarity", "--invert")
         results = self.fit("inverted.csv", "--invert")
         self.assertAlmostEqual(results["model"]["S"], 0.0227, delta=3e-5)
         self.assertIn("polarity turned round", results["fit"]["read_as"])
@@ -136,7 +165,7 @@ class TablesOfPiezos(Tables, ByHand):
         self.assertAlmostEqual(results["model"]["f0"], 40000, delta=1200)
 
     def test_ac_coupling(self):
-        text = self.succeed("report", "--points", TABLES / "high_pass.csv", *QUICK)
+        text = self.succeed("report", "--points", TABLES / "high_pass.csv", *QUICK, "--time", "0.00005")
         self.assertIn("WARNING: chi2/dof = 473.3", text)
         self.assertIn("AC coupling (high-pass) with its corner at 0.5 Hz would bring chi2/dof from", text)
 
@@ -145,8 +174,7 @@ class TablesOfPiezos(Tables, ByHand):
         for number in range(4):
             name = f"piezo_0{number}.csv"
             with self.subTest(name=name):
-                # With 1 ms even the end of the range has fewer than 256 switches.
-                results = self.fit(name, "--time", "0.001")
+                results = self.fit(name, "--time", "0.002")
                 self.assertEqual(results["fit"]["determined"], "all but beta")
                 low, high = results["fit"]["beta_range"]
                 estimate, u = results["fit"]["beta"], results["fit"]["ubeta"]
@@ -159,8 +187,35 @@ class TablesOfPiezos(Tables, ByHand):
                 if name in expected:
                     self.assertAlmostEqual(estimate, expected[name][0], delta=1e-4)
                     self.assertAlmostEqual(u, expected[name][1], delta=1e-4)
-        self.assertIn("WARNING: the points do not determine beta",
-                      self.succeed("report", "--points", TABLES / "piezo_01.csv", *QUICK))
+        text = self.succeed("report", "--points", TABLES / "piezo_01.csv", *QUICK)
+        self.assertIn("WARNING: the points do not determine beta: within 2u it may be anything from 0.0001 to 0.0368.", text)
+        self.assertIn("The energy is given at the estimate, 0.0065,", text)
+        # Each figure that depends on it has a mark, and what the mark means is below.
+        self.assertRegex(text, r"\n  In band, with its delay +\* +0\.")
+        self.assertIn("  * There is a warning below, on: damping.\n", text)
+        self.assertIn("The points leave beta open: these figures are at 0.0065;", text)
+        self.assertIn("The energy is given at the least that a device may have, 0.0001,",
+                      self.succeed("report", "--points", TABLES / "piezo_00.csv", *QUICK, "--time", "0.0001"))
+
+    def test_damping_that_is_given(self):
+        free = self.fit("piezo_00.csv")
+        held = self.fit("piezo_00.csv", "--damping", "0.005")
+        self.assertEqual(held["fit"]["determined"], "all")
+        self.assertEqual((held["model"]["beta"], held["model"]["ubeta"]), (0.005, 0))
+        self.assertEqual(held["model"]["dof"], free["model"]["dof"] + 1)
+        # Least squares under a condition: chi-square grows by the square of what it moves beta in units of u.
+        moved = (0.005 - free["fit"]["beta"]) / free["fit"]["ubeta"]
+        self.assertAlmostEqual(held["model"]["chi2"] - free["model"]["chi2"], moved ** 2, delta=0.02)
+        text = self.succeed("report", "--points", TABLES / "piezo_00.csv", *QUICK, "--time", "0.0001", "--damping", "0.005")
+        self.assertIn("Note: the points do not determine beta; it is held at the value given.", text)
+        self.assertNotIn("WARNING: the points do not determine beta", text)
+        # Beyond what the points leave open, where they determine it, and where it is of no use.
+        for name, damping, words in [("piezo_00.csv", "0.3", "the points say beta = -0.009925 with U = 0.0268"),
+                                     ("plain.csv", "0.3", "the points say beta = 0.3164 with U = 0.00193 (k = 2)"),
+                                     ("handheld_160hz.csv", "0.3", "determine the sensitivity alone")]:
+            for command in ["report", "certify"]:
+                arguments = [command, "--points", TABLES / name, "--damping", damping, "--out", "out"]
+                self.refuse(arguments, "--damping: ", words)
 
     def test_points_far_below_the_resonance(self):
         results = self.fit("handheld_160hz.csv")
@@ -265,6 +320,26 @@ class TablesThereAndBack(Tables, ProgramTest):
             for part in ["model", "energy", "monte_carlo"]:
                 first[part].pop("name", None), second[part].pop("name", None)
                 self.assertEqual(first[part], second[part], (name, part))
+
+    def test_a_sweep(self):
+        """What its points share is in the file: with it the uncertainties are the same, too."""
+        first = self.json_of(*QUICK, "--out", "out")
+        table = (self.directory / "out/frequency_response.csv").read_text().splitlines()
+        self.assertTrue(table[0].endswith(",u_common"))
+        self.assertTrue(table[-1].startswith("# shared: skew="))
+        second = self.json_of("--points", "out/frequency_response.csv", *QUICK, "--out", "again")
+        for name in ["S", "f0", "beta", "uS", "uf0", "ubeta", "chi2"]:
+            # 15 digits of the totals leave 12 of a part that is a thirtieth of them.
+            self.assertAlmostEqual(second["model"][name] / first["model"][name], 1, delta=1e-10, msg=name)
+        self.assertIn("with what all points have in common", second["fit"]["read_as"])
+        again = (self.directory / "again/frequency_response.csv").read_text().splitlines()
+        self.assertEqual(again[-1], table[-1])
+        self.refuse(["report", "--points", "out/frequency_response.csv", "--reference-uncertainty", "0.5"],
+                    "u_common", "expected one of them")
+        # Without that line the uncertainties would be too small.
+        bare = self.json_of("--points", self.write(table[:-1]), *QUICK)
+        for name in ["uf0", "ubeta"]:
+            self.assertLess(bare["model"][name], 0.99 * first["model"][name])
 
     def test_german_spreadsheet(self):
         header = "Frequenz [Hz];Empfindlichkeit [V/(m/s²)];Phase [Grad];U(A);U(Phase)"

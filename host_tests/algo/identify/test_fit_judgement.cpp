@@ -161,6 +161,44 @@ TEST(Magnitudes, GivenDampingIsHeldWhereItIsNotDetermined) {
   EXPECT_NEAR(fit.result().model.damping, 0.3182, 1e-9);
 }
 
+// With phases, too: least squares under a condition.
+TEST(Judgement, GivenDampingIsHeldWhereThePointsLeaveItOpen) {
+  Points given = piezo();
+  given.scatter = 1.0;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const FrequencyResponse response = response_of(given, seed);
+    Wlsp fit;
+    (void)fit.fit(response);
+    const WlspFit free = fit.result();
+    ASSERT_EQ(judge(free).determined, Determined::kAllButDamping) << seed;
+    fit.give_damping(0.01);
+    ASSERT_EQ(fit.fit(response), Status::kOk);
+    const WlspFit held = fit.result();
+    EXPECT_TRUE(held.is_damping_given);
+    EXPECT_EQ(held.model.damping, 0.01);
+    EXPECT_EQ(held.u_damping, 0.0);
+    EXPECT_EQ(held.dof, free.dof + 1);
+    // Chi-square grows by the square of what was moved, to first order.
+    const double moved = (0.01 - free.model.damping) / free.u_damping;
+    EXPECT_NEAR(held.chi2 - free.chi2, moved * moved, 0.05);
+    // No device of that damping nearby fits better.
+    for (const double s : {-1.0, 0.0, 1.0}) {
+      for (const double f : {-1.0, 0.0, 1.0}) {
+        const Accelerometer other = {
+            held.model.sensitivity + 0.1 * s * held.u_sensitivity,
+            held.model.natural_frequency_hz + 0.1 * f * held.u_natural_frequency_hz, 0.01};
+        EXPECT_GE(fit.chi_square_of(other), held.chi2 - 1e-6);
+      }
+    }
+    EXPECT_EQ(judge(held).determined, Determined::kAll);
+    // Far beyond what the points leave open nothing is held.
+    fit.give_damping(0.5);
+    (void)fit.fit(response);
+    EXPECT_FALSE(fit.result().is_damping_held);
+    EXPECT_EQ(fit.result().chi2, free.chi2);
+  }
+}
+
 TEST(Judgement, PointsToAFifthOfTheResonanceLeaveTheDampingOpen) {
   const FrequencyResponse response = response_of(piezo());
   Wlsp fit;

@@ -67,7 +67,13 @@ TEST(PointsReader, TableWithFit) {
     EXPECT_EQ(with_fit.points().points()[i].amplitude, without.points().points()[i].amplitude);
     EXPECT_EQ(with_fit.points().points()[i].u_phase_rad, without.points().points()[i].u_phase_rad);
   }
-  expect_error(kHeaderWithFit + kGood, 2, "5 columns", "nine columns");
+  expect_error(kHeaderWithFit + kGood, 2, "5 columns", "as many columns as the header has");
+  // And what the points have in common.
+  expect_points(kHeader.substr(0, kHeader.size() - 1) + ",u_common\n" +
+                    "30,1.03,-0.1,0.01,1.0,0.005\n40,1.04,-0.4,0.01,1.0,0.005\n"
+                    "50,1.00,-0.3,0.01,1.0,0.005\n# shared: skew=1e-7\n",
+                3);
+  expect_error(kHeader.substr(0, kHeader.size() - 1) + ",mine\n" + kGood, 1, "6 columns");
   // Nine columns are those of emax only under its header.
   expect_error("30,1.03,-0.1,0.01,1.0,1,2,3,4\n", 1, "more than 8 columns", "five numbers");
   expect_error("a,b,c,d,e,f,g,h,i\n30,1.03,-0.1,0.01,1.0,1,2,3,4\n", 1, "more than 8 columns");

@@ -307,7 +307,8 @@ TEST(Measurement, FaultKeepsThePointsBeforeIt) {
 
   const std::string text = text_of(
       [&](TextWriter& out) { emax::app::write_measured_points_csv(measurement_of(run), out); });
-  EXPECT_EQ(text.substr(0, text.find('\n')), "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,u_common");
   const FrequencyResponse points = table_of(text);
   ASSERT_EQ(points.size(), count);
   EXPECT_EQ(points.points()[3].amplitude, run.sweep.points()[3].point.amplitude);
