@@ -122,9 +122,11 @@ class TableFinder final {
 
   // Between the header and the first row only more of the header may stand.
   void take_lines_below(std::vector<std::string> names, std::size_t index) {
+    constexpr std::size_t kMostLines = 4;  // Of names; each makes them longer.
     for (; index < before_.size(); ++index) {
       const std::vector<std::string> below = names_in(before_[index]);
-      if (!may_be_names(below) || !continues_header(below)) {
+      const bool is_full = table_.header_lines.size() >= kMostLines;
+      if (is_full || !may_be_names(below) || !continues_header(below)) {
         if (is_statement(table_.text.lines[before_[index]])) {
           continue;
         }
@@ -138,6 +140,12 @@ class TableFinder final {
 
   // Columns keep their names where units alone are added, and where they are not used.
   void take_more_names(std::vector<std::string>& names, const std::vector<std::string>& below) {
+    const Header another = read_header(below);
+    if (another.is_complete) {  // The header once more, or the real one below a title.
+      names = below;
+      table_.columns = another.columns;
+      return;
+    }
     const std::vector<Column> before = table_.columns;
     names = join_names(names, below);
     table_.columns = read_header(names).columns;

@@ -585,6 +585,18 @@ TEST(Import, HowMany) {
   EXPECT_EQ(refused(many + "5000,1,0,0.01,1\n").line, emax::kMaxPoints + 1);
 }
 
+// A header that never ends is none; its names would grow with each line.
+TEST(Import, HeadersHaveAnEnd) {
+  std::string text = "Frequency,Sensitivity,,Phase,\n";
+  for (int i = 0; i < 20'000; ++i) {
+    text += ",value,U,value,U\n";
+  }
+  const ImportError error = refused(text + "3,2,0.4,1,0.5\n4,2,0.4,1,0.5\n5,2,0.4,1,0.5\n");
+  EXPECT_EQ(error.line, 5U);
+  // Twice the same is the same.
+  expect_rows(imported(std::string(kHeader) + kHeader + kRows));
+}
+
 // A permutation of the rows is the same table.
 TEST(Import, OrderDoesNotMatter) {
   std::vector<std::string> rows;
