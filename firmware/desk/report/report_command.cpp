@@ -24,6 +24,7 @@
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
 #include "desk/report/failure_words.hpp"
+#include "desk/report/figure_mark.hpp"
 #include "desk/report/fit_causes.hpp"
 #include "desk/trials/thread_helper.hpp"
 
@@ -209,12 +210,14 @@ Problem run_report(Span<const std::string_view> arguments) {
   const bool has_table = !options.points_path.empty() && !problem_of_work;
   const std::string cause = has_table ? cause_of(evaluation.fit, imported.names_phase_unit) : "";
   const app::Measurement measurement = bench.measurement();
-  const app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
-                                      options.measures() ? &measurement : nullptr,
-                                      options.labels(),
-                                      options.in_g,
-                                      or_null(cause),
-                                      or_null(imported.understanding)};
+  app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
+                                options.measures() ? &measurement : nullptr,
+                                options.labels(),
+                                options.in_g,
+                                or_null(cause),
+                                or_null(imported.understanding)};
+  const std::string mark = problem_of_work ? "" : mark_of_figures(evaluation, context);
+  context.mark = or_null(mark);
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
     return give_sensitivity(results, options.json, files);

@@ -1,7 +1,6 @@
 // Figures in percent of S a, with as many digits as their uncertainty carries.
 #include "report_figures.hpp"
 
-#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 namespace emax::app {
@@ -21,44 +20,6 @@ double power_of_ten(int exponent) noexcept {
     power *= 10.0;
   }
   return power;
-}
-
-// Warnings that concern the figures, and not only the paper's trials.
-constexpr Warning kMarking[] = {
-    Warning::kFit,           Warning::kOpenDamping, Warning::kDisagreement, Warning::kLowFrequency,
-    Warning::kShortTime,     Warning::kGuard,       Warning::kCrowded,      Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kMeasurement, Warning::kEnded,        Warning::kDataSheet,
-    Warning::kChange};
-
-bool is_marked(const EvaluationResults& results, const ReportContext& context) noexcept {
-  bool any = false;
-  for (const Warning warning : kMarking) {
-    any = any || holds(warning, results, context);
-  }
-  return any;
-}
-
-void write_mark(const EvaluationResults& results, const ReportContext& context,
-                ReportWriter& out) noexcept {
-  out.text("  * There is a warning below, on: ");
-  const char* last = "";
-  for (const Warning warning : kMarking) {
-    if (holds(warning, results, context) && about(warning) != last) {
-      out.text(*last == '\0' ? "" : ", ").text(about(warning));
-      last = about(warning);
-    }
-  }
-  out.text(".\n");
-  if (!results.is_damping_open()) {
-    return;
-  }
-  out.text("  The points leave beta open: these figures are at ");
-  out.general(results.judgement.device.damping, 3);
-  if (results.has_cut_range && results.cut_low_v2s > 0.0) {
-    out.text(";\n  the paper's is ").general(results.percent_of(results.cut_low_v2s), 4);
-    out.text(" to ").general(results.percent_of(results.cut_high_v2s), 4).text(" over the range");
-  }
-  out.text(".\n");
 }
 
 struct Row {
@@ -246,7 +207,7 @@ void write_switching_times(std::size_t switches, Span<const double> times_s,
 
 void write_figures(const EvaluationResults& results, const ReportContext& context,
                    ReportWriter& out) noexcept {
-  const bool marks = is_marked(results, context);
+  const bool marks = context.mark != nullptr;
   out.heading(ReportSection::kFigures,
               "THE FIGURES (at the estimates; worst rms error of signals within +-a, in % of S a)");
   out.part(ReportPart::kTable);
@@ -281,7 +242,7 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
         "  The energy difference is no error, but the sensor's energy less that of the filter.\n");
   }
   if (marks) {
-    write_mark(results, context, out);
+    out.text("  * ").text(context.mark).line();
   }
 }
 

@@ -33,6 +33,7 @@ struct ReportContext {
   bool in_g = false;              ///< Accelerations and sensitivities also in standard gravity.
   const char* cause = nullptr;    ///< Why the points do not fit a device; null if nobody knows.
   const char* read_as = nullptr;  ///< What was understood of a table of points; null for nothing.
+  const char* mark = nullptr;     ///< What the star at the figures means; null for no star.
 };
 
 /// m/s^2, exactly (ISO 80000-3).
