@@ -4,6 +4,7 @@
 emax_leave_out(test_elementary_accuracy)
 
 # The certificate is for a PC, in memory and time.
+emax_leave_out(test_box_curvature)
 emax_leave_out(test_certificate_grid)
 emax_leave_out(test_energy_certificate)
 

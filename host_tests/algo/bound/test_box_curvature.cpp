@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "emax/base/units.hpp"
 #include "emax/bound/box_curvature.hpp"
 #include "emax/energy/switching_signal.hpp"
 
@@ -108,14 +109,14 @@ TEST(BoxCurvature, BoundSolvesItsEquation) {
 TEST(BoxCurvature, FilterIntegralIsAboveTheSum) {
   // Of order 1 h is w e^(-w t), and its integral 1 - e^(-w T).
   const double of_first = filter_integral(butterworth({1, 1000.0, 0.7}), 1e-3);
-  const double exact = 1.0 - std::exp(-2.0 * M_PI);
+  const double exact = 1.0 - std::exp(-2.0 * kPi);
   EXPECT_GT(of_first, exact);
   EXPECT_LT(of_first, 1.02 * exact);
   // Of order 2 h is w sqrt(2) e^(-c t) sin(c t), c = w/sqrt(2): the sum over half-waves is
   // coth(pi/2).
   const double of_second = filter_integral(butterworth({2, 1000.0, 3.0}), 20e-3);
-  EXPECT_GT(of_second, 1.0 / std::tanh(0.5 * M_PI));
-  EXPECT_LT(of_second, 1.02 / std::tanh(0.5 * M_PI));
+  EXPECT_GT(of_second, 1.0 / std::tanh(0.5 * kPi));
+  EXPECT_LT(of_second, 1.02 / std::tanh(0.5 * kPi));
 }
 
 }  // namespace

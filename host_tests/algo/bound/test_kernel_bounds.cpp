@@ -90,7 +90,6 @@ TEST(KernelBounds, AreJustAboveTheIntegralsForEveryCriterion) {
   const ReferenceDelay own = {DelayMode::kOfSensor, 0.0};
   const Case cases[] = {{1, {Criterion::kIntegralSquareError, {}}},
                         {1, {Criterion::kEnergyDifference, {}}},
-                        {6, {Criterion::kEnergyDifference, {}}},
                         {1, {Criterion::kInBandError, {}}},
                         {3, {Criterion::kInBandError, own}}};
   for (const Case& own_case : cases) {
@@ -99,7 +98,7 @@ TEST(KernelBounds, AreJustAboveTheIntegralsForEveryCriterion) {
     ASSERT_EQ(model.set(test::kPaperDevice, filter, own_case.measure), Status::kOk);
     const double duration_s = 0.7e-3;
     const Bounds found(model, duration_s);
-    for (const double t_s : {0.03e-3, 0.2e-3, 0.41e-3, 0.6e-3}) {
+    for (const double t_s : {0.2e-3, 0.6e-3}) {
       const double integral = by_hand(model, t_s, duration_s);
       const double bound = found.bounds.bound(t_s, t_s);
       EXPECT_GT(bound, integral * 0.999) << own_case.order << ' ' << t_s;
