@@ -48,6 +48,11 @@ namespace {
 // last factorisations a little.
 constexpr double kRelaxShare = 0.65;
 constexpr double kPolishShare = 0.9;
+// On many cells, rounds that change the estimate by less than this, several in a row, gain less
+// than gradient steps do.
+constexpr std::size_t kManyCells = 500;
+constexpr double kCalm = 5e-5;
+constexpr int kCalmRounds = 3;
 // Gradient steps for each round, if rounds are given.
 constexpr double kPolishPerRound = 40.0;
 // After Ctrl-C, to come to rest.
@@ -99,10 +104,10 @@ Syntax syntax_of(CertifyOptions& options) {
                            "limit", "criterion", "reference-delay"}) {
     syntax.options.push_back(report_option(report, name));
   }
-  syntax.options.push_back(
-      report_option(report, "json",
-                    "{E,bound,gap,cells,multipliers,nodes,corners,\n"
-                    "seconds,E_range,warnings} on standard output instead of text"));
+  syntax.options.push_back(report_option(report, "json",
+                                         "{E,bound,gap,cells,multipliers,nodes,corners,\n"
+                                         "seconds,E_range,warnings} on standard output\n"
+                                         "instead of text"));
   const std::string heading = syntax.options.back().heading;
   syntax.options.push_back(
       {"box", heading, "auto|uS,uf0,ubeta", "", "auto or three numbers, uS,uf0,ubeta",
@@ -290,9 +295,14 @@ void relax(EnergyCertificate& certificate, double energy, const CertifyOptions& 
     return options.rounds > 0 ? static_cast<double>(rounds) / static_cast<double>(options.rounds)
                               : spent_s() / (kRelaxShare * options.effort_s);
   };
-  while (part() < 1.0 && !certificate.at_rest() && !stop_requested()) {
+  int calm = 0;
+  while (part() < 1.0 && calm < kCalmRounds && !certificate.at_rest() && !stop_requested()) {
+    const double before = certificate.estimate();
     certificate.relax();
     ++rounds;
+    const bool is_calm = certificate.grid().cells > kManyCells &&
+                         std::abs(certificate.estimate() - before) < kCalm * before;
+    calm = is_calm ? calm + 1 : 0;
     show(progress, "relaxation", certificate.estimate(), energy, std::min(part(), 1.0));
   }
 }
@@ -603,8 +613,9 @@ std::string help_on_certify() {
 
 Proves how far the maximum energy of emax report can be from the truth: a bound
 of the energy, by any criterion, that no signal within +-a on [0, T] exceeds,
-whatever its shape; with --box for every device within its uncertainties. The longer it runs the tighter the bound; Ctrl-C ends it
-early with what is proven by then.
+whatever its shape; with --box for every device within its uncertainties. The
+longer it runs the tighter the bound; Ctrl-C ends it early with what is proven
+by then.
 )" + help_on(syntax_of(options).options);
 }
 

@@ -31,6 +31,7 @@ inline constexpr Command kCertifyCommand = {
   130   stopped by Ctrl-C before anything was proven, without partial files
 )",
     R"(  emax certify --model 1.037,4073,0.3182 --effort 30 --out certificate.json
+  emax certify --model 1.037,4073,0.3182,0.003,6,0.0004 --box auto --effort 30
   emax certify --points host_tests/data/djb_a1800v.csv --time 0.001
   emax certify --model 1.037,4073,0.3182 --order 4 --json
 )"};
