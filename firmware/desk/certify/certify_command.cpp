@@ -48,11 +48,6 @@ namespace {
 // last factorisations a little.
 constexpr double kRelaxShare = 0.65;
 constexpr double kPolishShare = 0.9;
-// On many cells, rounds that change the estimate by less than this, several in a row, gain less
-// than gradient steps do.
-constexpr std::size_t kManyCells = 500;
-constexpr double kCalm = 5e-5;
-constexpr int kCalmRounds = 3;
 // Gradient steps for each round, if rounds are given.
 constexpr double kPolishPerRound = 40.0;
 // After Ctrl-C, to come to rest.
@@ -295,14 +290,9 @@ void relax(EnergyCertificate& certificate, double energy, const CertifyOptions& 
     return options.rounds > 0 ? static_cast<double>(rounds) / static_cast<double>(options.rounds)
                               : spent_s() / (kRelaxShare * options.effort_s);
   };
-  int calm = 0;
-  while (part() < 1.0 && calm < kCalmRounds && !certificate.at_rest() && !stop_requested()) {
-    const double before = certificate.estimate();
+  while (part() < 1.0 && !certificate.at_rest() && !stop_requested()) {
     certificate.relax();
     ++rounds;
-    const bool is_calm = certificate.grid().cells > kManyCells &&
-                         std::abs(certificate.estimate() - before) < kCalm * before;
-    calm = is_calm ? calm + 1 : 0;
     show(progress, "relaxation", certificate.estimate(), energy, std::min(part(), 1.0));
   }
 }
@@ -501,9 +491,10 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
   out.general(rounded_up(std::sqrt(result.bound_v2s() / duration_s), 4), 5).text(" V\n");
   if (proven.model->delay_s() > 0.0) {
-    const double of_unit = result.bound_v2s() / (proven.limit_mps2 * proven.limit_mps2);
-    const double whole =
-        proven.limit_mps2 * proven.limit_mps2 * true_bound(*proven.model, of_unit, duration_s);
+    // Where the gain follows S, that of the corners is the largest one.
+    const ModalModel& model = proven.box != nullptr ? proven.box->models()[0] : *proven.model;
+    const double a2 = proven.limit_mps2 * proven.limit_mps2;
+    const double whole = a2 * true_bound(model, result.bound_v2s() / a2, duration_s);
     out.text("True delay  E <= ").general(rounded_up(whole, 6), 7);
     out.text(" V^2 s; all else is for the delayed filter continued by its modes\n");
   }
