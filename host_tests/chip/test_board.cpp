@@ -36,7 +36,7 @@ TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
   EXPECT_EQ(name.find("emax,nucleo_g474re,00112233445566778899AABB,"), 0U) << name;
   EXPECT_EQ(ask("*TST?"), "0");
   EXPECT_EQ(error(), 0);
-  EXPECT_EQ(led_changes(4.0), 4U);  // A flash every two seconds.
+  EXPECT_EQ(led_changes(4.5), 4U);  // A flash every two seconds.
   EXPECT_EQ(board->chip.clocks.hclk_hz, 170'000'000U);
   EXPECT_EQ(board->chip.findings.text(), "");
 }
