@@ -106,12 +106,13 @@ TEST(G474FlashStore, FirstRecordSurvivesACutToo) {
   }
 }
 
-TEST(G474FlashStore, SlotsArePagesOfTheSecondBank) {
+TEST(G474FlashStore, SlotsAreTheLastPagesOfTheSecondBank) {
   Bench bench;
   const std::array<std::uint8_t, 9> bytes = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   ASSERT_EQ(bench.store().write(3, bytes), Status::kOk);
   for (std::uint32_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(bench.flash().byte_at(3 * board::kPagesPerSlot * 2048 + i), i + 1);
+    const std::uint32_t page = 128 - (board::kStoreFormat.slot_count - 3) * board::kPagesPerSlot;
+    EXPECT_EQ(bench.flash().byte_at(page * 2048 + i), i + 1);
   }
 }
 

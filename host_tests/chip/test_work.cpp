@@ -287,6 +287,27 @@ class Dialogue : public Loopback {
   }
 };
 
+/// Numbers as far as a reader looks at them; words to the letter.
+bool is_alike(const std::string& answer, const std::string& printed) {
+  const auto fields = [](const std::string& text) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, ',');) {
+      parts.push_back(part);
+    }
+    return parts;
+  };
+  const auto is_near = [](const std::string& a, const std::string& b) {
+    char* end = nullptr;
+    const double number = std::strtod(b.c_str(), &end);
+    const bool is_number = end != b.c_str() && *end == '\0';
+    return a == b || (is_number && std::fabs(std::strtod(a.c_str(), nullptr) - number) <=
+                                       1e-5 * std::fabs(number));
+  };
+  const std::vector<std::string> got = fields(answer), wanted = fields(printed);
+  return got.size() == wanted.size() && std::equal(got.begin(), got.end(), wanted.begin(), is_near);
+}
+
 TEST_F(Dialogue, OfTheReadmeIsWhatTheBoardAnswers) {
   boot();
   std::size_t answers = 0;
@@ -297,7 +318,8 @@ TEST_F(Dialogue, OfTheReadmeIsWhatTheBoardAnswers) {
       continue;
     }
     const bool is_query = turn.typed.find('?') != std::string::npos;
-    EXPECT_EQ(ask(turn.typed, is_query ? 60.0 : 0.1), turn.answer) << turn.typed;
+    const std::string answer = ask(turn.typed, is_query ? 60.0 : 0.1);
+    EXPECT_TRUE(is_alike(answer, turn.answer)) << turn.typed << "\n" << answer;
     answers += is_query ? 1 : 0;
   }
   EXPECT_GE(answers, 8U);

@@ -40,8 +40,12 @@ constexpr std::uint32_t kTwoBanks = 1U << 22;
 constexpr std::uint32_t kMostErase_us = 100'000;
 constexpr std::uint32_t kMostProgram_us = 1'000;
 
+std::uint32_t page_of(std::uint32_t slot) noexcept {
+  return kFirstRecordPage + slot * kPagesPerSlot;
+}
+
 std::uintptr_t address_of(std::uint32_t slot, std::uint32_t offset) noexcept {
-  return kFlashBank2 + std::uintptr_t{slot} * kPagesPerSlot * kFlashPageBytes + offset;
+  return kFlashBank2 + std::uintptr_t{page_of(slot)} * kFlashPageBytes + offset;
 }
 
 std::uint32_t word_of(const std::uint8_t* bytes) noexcept {
@@ -121,7 +125,7 @@ Status G474FlashStore::do_read(std::uint32_t slot, std::uint32_t offset,
 
 Status G474FlashStore::do_erase(std::uint32_t slot) noexcept {
   for (std::uint32_t i = 0; i < kPagesPerSlot; ++i) {
-    if (!erase_page(slot * kPagesPerSlot + i)) {
+    if (!erase_page(page_of(slot) + i)) {
       return Status::kHardwareFault;
     }
   }

@@ -14,7 +14,11 @@ inline constexpr std::uint32_t kFlashPageBytes = 2048;
 inline constexpr std::uint32_t kFlashPagesPerBank = 128;
 inline constexpr std::uint32_t kPagesPerSlot =
     (kStoreFormat.slot_bytes + kFlashPageBytes - 1) / kFlashPageBytes;
-static_assert(kStoreFormat.slot_count * kPagesPerSlot <= kFlashPagesPerBank);
+/// The records have the last pages of bank 2: memory.ld leaves them free.
+inline constexpr std::uint32_t kFirstRecordPage =
+    kFlashPagesPerBank - kStoreFormat.slot_count * kPagesPerSlot;
+static_assert(kPagesPerSlot > 1 || kFirstRecordPage == 118,
+              "with a board's capacities as in memory.ld");
 static_assert(kStoreFormat.unit_bytes == 8, "the memory programs double words");
 
 /// A slot is a page of bank 2, or more where one is too small; code runs on in bank 1 while a page
