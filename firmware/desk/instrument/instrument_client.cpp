@@ -301,7 +301,8 @@ Problem InstrumentClient::measure(ConsoleProgress& progress) {
 Problem InstrumentClient::keep_points(std::size_t count) {
   while (early_points_.size() < count && count <= kMaxPoints) {
     std::string line;
-    if (Problem problem = ask(":FETC:FRES:POIN? " + std::to_string(early_points_.size() + 1), line)) {
+    if (Problem problem =
+            ask(":FETC:FRES:POIN? " + std::to_string(early_points_.size() + 1), line)) {
       return problem;
     }
     EarlyPoint point;
