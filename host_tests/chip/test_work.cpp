@@ -132,6 +132,23 @@ TEST_F(Loopback, TakesTheLatencyThatIsStated) {
   EXPECT_EQ(record.stated_latency, 513U);
 }
 
+// What the board's page asks for before a bench is connected, with the image as it is flashed: the
+// latency is longer than a period of the lowest frequency.
+TEST_F(Loopback, IsMeasuredByItsCommand) {
+  boot();
+  const std::vector<double> found = numbers(ask("DIAG:LOOP?", 10.0));
+  EXPECT_EQ(ask("SYST:ERR?"), "0,\"No error\"");
+  ASSERT_EQ(found.size(), 11U);
+  EXPECT_NEAR(found[0], 513.0, 0.05);
+  EXPECT_NEAR(found[1], 0.0, 1e-3);
+  EXPECT_NEAR(found[3], 1.0, 1e-3);
+  EXPECT_NEAR(found[4], 1.0, 1e-3);
+  EXPECT_NEAR(found[5], 1.0, 1e-4);
+  EXPECT_NEAR(found[6], 0.0, 1e-8);
+  EXPECT_NEAR(found[7], NoisyWire::kNoise_v / std::sqrt(3.0), 0.1 * NoisyWire::kNoise_v);
+  EXPECT_EQ(found[10], 0.0);
+}
+
 /// Counts the instructions of a sweep without those that wait for a block.
 class WorkCounter {
  public:

@@ -1,6 +1,7 @@
 // Figures in percent of S a, with as many digits as their uncertainty carries.
 #include "report_figures.hpp"
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
 namespace emax::app {
