@@ -16,7 +16,6 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   INCLUDES <folder>...   Their headers.
 #   SIMULATED_BENCH        The analog side is hal/sim, and about() tells what that was built from.
 #   WATCHDOG               It has one.
-#   WITHOUT_LOOPBACK       No flash memory is left for the loopback: its commands are not there.
 #   SEMIHOSTING            Test images may call an emulator or debugger: there are test images.
 #   RUNNER <word>...       Begins a command line that runs an image as if it were a program of this PC:
 #                          <word>... [--console null|tcp:PORT] [--instruction-ns N] IMAGE [ARGUMENT...]. Without it,
@@ -33,7 +32,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   GOOGLETEST_MEMORY <file>  Memory map for the PC's tests as images: regions `code` and `ram`, of megabytes.
 #   SLOW_TEST_S <s>        What of these takes longer is left out; slow_tests.txt in the board's folder lists it.
 function(emax_declare_board)
-  set(flags SIMULATED_BENCH WATCHDOG WITHOUT_LOOPBACK SEMIHOSTING TELNET_BREAK)
+  set(flags SIMULATED_BENCH WATCHDOG SEMIHOSTING TELNET_BREAK)
   set(values CORE PRODUCT CHECK CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
   set(lists SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "${flags}" "${values}" "${lists}")

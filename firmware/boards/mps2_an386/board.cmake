@@ -3,7 +3,6 @@
 include(${EMAX_BOARD_COMMON}/mps2/mps2.cmake)
 emax_declare_board(${EMAX_MPS2}
   CORE cortex-m4f
-  WITHOUT_LOOPBACK  # The simulated bench and software for double take the room.
   RUNNER ${EMAX_BOARD_COMMON}/qemu.py qemu-system-arm -M mps2-an386 run
   CORE_TITLE Cortex-M4F
   TABLE_CLOCK_MHZ 170

@@ -150,8 +150,7 @@ Frame SimBench::advance(Word word) noexcept {
     stuck_ = stuck_ || (fault.kind == FaultKind::kStuckChannel && fault.at_frame == clock);
   }
   const double now_v = drive_v(word_at(now));
-  const BenchVolts volts =
-      hal::kHasLoopback && is_looped_ ? bench_.step_wired(now_v, later_v(now)) : bench_.step(now_v);
+  const BenchVolts volts = is_looped_ ? bench_.step_wired(now_v, later_v(now)) : bench_.step(now_v);
   Frame frame{digitised(volts.reference_v * adc_.reference_codes_per_v),
               digitised(volts.device_v * adc_.device_codes_per_v)};
   if (stuck_) {

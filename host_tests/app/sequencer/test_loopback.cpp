@@ -29,12 +29,6 @@ sim::BenchSettings off_bench(std::uint64_t seed) {
 
 class Loopback : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!app::kHasLoopback) {
-      GTEST_SKIP() << "left out of this build";
-    }
-  }
-
   bool run(const sim::BenchSettings& settings) {
     EXPECT_EQ(bench_.configure(settings), Status::kOk);
     EXPECT_FALSE(sequencer_.loop_back(bench_, app::default_sweep_settings()));

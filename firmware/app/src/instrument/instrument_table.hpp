@@ -133,7 +133,7 @@ constexpr std::size_t size_of(const scpi::Command<Instrument> (&/*part*/)[kSize]
 // In the order of the list in the README. The settings come from their rows, group by group.
 constexpr auto all_commands() noexcept {
   constexpr std::size_t kRoom = size_of(kCommon) + size_of(kWork) + size_of(kEnergy) +
-                                size_of(kUncertainty) + (kHasLoopback ? size_of(kLoopback) : 0) +
+                                size_of(kUncertainty) + size_of(kLoopback) +
                                 count_commands(kSettingRows) + count_commands(kSweepSettingRows);
   CommandTable<kRoom> table;
   table.add(kCommon);
@@ -151,9 +151,7 @@ constexpr auto all_commands() noexcept {
     table.add_settings<SettingsOf::kEvaluation>(kSettingRows, group);
   }
   table.add(kUncertainty);
-  if constexpr (kHasLoopback) {
-    table.add(kLoopback);
-  }
+  table.add(kLoopback);
   return table;
 }
 

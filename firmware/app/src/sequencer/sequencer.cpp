@@ -150,11 +150,9 @@ Refusal Sequencer::loop_back(hal::AnalogStream& stream, const SweepSettings& set
 }
 
 void Sequencer::step_loopback() noexcept {
-  if constexpr (kHasLoopback) {
-    workspace_.loopback.step(*stream_);
-    if (workspace_.loopback.done()) {
-      end_loopback();
-    }
+  workspace_.loopback.step(*stream_);
+  if (workspace_.loopback.done()) {
+    end_loopback();
   }
 }
 
@@ -306,11 +304,9 @@ void Sequencer::abort() noexcept {
     sweep_run().stop();
     (void)sweep_.copy_to(points_);
   }
-  if constexpr (kHasLoopback) {
-    if (job_ == Job::kLoopback) {
-      workspace_.loopback.stop(*stream_);
-      (void)stream_->loop_back(false);
-    }
+  if (job_ == Job::kLoopback) {
+    workspace_.loopback.stop(*stream_);
+    (void)stream_->loop_back(false);
   }
   if (job_ == Job::kEvaluation) {
     evaluation_run().stop();
@@ -325,7 +321,7 @@ double Sequencer::progress() const noexcept {
     case Job::kSweep:
       return sweep_.progress();
     case Job::kLoopback:
-      return kHasLoopback ? workspace_.loopback.progress() : 1.0;
+      return workspace_.loopback.progress();
     case Job::kEvaluation:
       return workspace_.evaluation.progress();
     case Job::kFixedPoint:

@@ -9,15 +9,8 @@
 #include "emax/base/status.hpp"
 #include "emax/hal/word.hpp"
 
-// A board without room for the loopback leaves it out, the same for all sources.
-#ifndef EMAX_LOOPBACK
-#define EMAX_LOOPBACK 1
-#endif
-
 namespace emax::hal {
 
-/// False where the build has no loopback: nothing of it is linked.
-inline constexpr bool kHasLoopback = EMAX_LOOPBACK != 0;
 /// The most frames that a block may have.
 inline constexpr std::size_t kMaxBlockFrames = 64;
 /// After a fault the drive is at zero within this many frames.

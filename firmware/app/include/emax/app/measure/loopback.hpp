@@ -16,8 +16,6 @@
 
 namespace emax::app {
 
-using hal::kHasLoopback;
-
 /// What a loopback finds. Volts are outside the front end, as the full scales state them.
 struct LoopbackResults {
   double latency_frames = 0.0;  ///< From the drive to the reference's channel.
