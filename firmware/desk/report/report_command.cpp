@@ -204,7 +204,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   }
   static BenchJob bench;
   static ImportedPoints imported;
-  const Problem problem_of_work = work(options, bench, imported);
+  Problem problem_of_work = work(options, bench, imported);
   const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;

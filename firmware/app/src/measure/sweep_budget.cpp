@@ -55,7 +55,7 @@ double chi_square_limit(double dof) noexcept {
 /// have in common.
 double different_samples(double repeat_samples, double periods_per_sample) noexcept {
   auto samples = static_cast<std::uint32_t>(repeat_samples);
-  auto periods = static_cast<std::uint32_t>(repeat_samples * periods_per_sample + 0.5);
+  auto periods = static_cast<std::uint32_t>(floor(repeat_samples * periods_per_sample + 0.5));
   while (periods > 0) {
     const std::uint32_t rest = samples % periods;
     samples = periods;
