@@ -399,7 +399,9 @@ void Sweep::share_effects(double check_change) noexcept {
                                   squares > 0.0 ? sqrt(squares) : 0.0, ratio_factor(), highest_hz,
                                   sqrt(device2) / work_.scales_.device_v);
   // What the noise of two checks hides may have drifted all the same.
-  const double drift = sqrt(std::max(squares, kHiddenShare * check_u * check_u));
+  const double drift = norm(results.check_after) > 0.0
+                           ? sqrt(std::max(squares, kHiddenShare * check_u * check_u))
+                           : 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     time += time_of(results.table[i].point.frequency_hz, results.shared.corner_hz);
   }
