@@ -37,6 +37,9 @@ emax_leave_out(test_sim_noise
 emax_leave_out(test_sweep_faults
   SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
   SweepFaults.AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration)
+emax_leave_out(test_sweep
+  Sweep.SharpResonancesAreMeasured
+  Sweep.ResonanceThatIsTooSharpIsNamed)
 emax_leave_out(test_evaluation_figures
   EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom
   EvaluationFigures.GuardsEachUncertainty)
