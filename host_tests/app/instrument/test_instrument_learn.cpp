@@ -35,7 +35,7 @@ class Dice {
     z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
     return z ^ (z >> 31U);
   }
-  std::size_t below(std::size_t end) { return bits() % end; }
+  std::size_t below(std::size_t end) { return static_cast<std::size_t>(bits() % end); }
   /// From 0 to below 1.
   double share() { return static_cast<double>(bits() >> 11U) * 0x1p-53; }
   double within(double low, double high) { return with_digits(low + (high - low) * share()); }
