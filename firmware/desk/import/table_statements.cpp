@@ -5,6 +5,8 @@
 #include <iterator>
 #include <vector>
 
+#include "emax/base/decimal.hpp"
+
 #include "desk/import/input_units.hpp"
 
 namespace emax::desk {
@@ -142,11 +144,12 @@ double coverage_in(std::string_view line) {
 
 }  // namespace
 
-std::string text_of_coverage(double coverage) {
-  std::string text = std::to_string(coverage);
-  text.erase(text.find_last_not_of('0') + 1);
-  return "k = " + (text.back() == '.' ? text.substr(0, text.size() - 1) : text);
+std::string text_of_number(double value) {
+  char text[24];
+  return {text, format_general(value, 6, text)};
 }
+
+std::string text_of_coverage(double coverage) { return "k = " + text_of_number(coverage); }
 
 bool is_statement(std::string_view text) {
   const std::string letters = small(text);

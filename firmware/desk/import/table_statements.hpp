@@ -25,6 +25,8 @@ struct Statements {
   StatedUnit phase;
 };
 
+/// @returns The number in up to six digits.
+std::string text_of_number(double value);
 /// @returns "k = 2".
 std::string text_of_coverage(double coverage);
 

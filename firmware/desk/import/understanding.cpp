@@ -1,7 +1,6 @@
 // What was understood of a table, in one line.
 #include "desk/import/understanding.hpp"
 
-#include <cstdio>
 #include <string_view>
 
 #include "desk/import/table_layout.hpp"
@@ -11,14 +10,8 @@ namespace emax::desk {
 
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  (void)std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string value_of(const GivenUncertainty& given) {
-  return number(given.value) + " " + given.unit.name;
+  return text_of_number(given.value) + " " + given.unit.name;
 }
 
 void add_uncertainty_units(const Conversions& by, std::string& text) {
@@ -64,7 +57,7 @@ void add_changes(const Conversions& by, const ImportOptions& options, std::strin
   text += by.phase().sign < 0.0 ? "; a lag is positive" : "";
   text += options.is_inverted ? "; polarity turned round" : "";
   if (options.channel_delay_s != 0.0) {
-    text += "; the channel's delay of " + number(options.channel_delay_s) + " s taken out";
+    text += "; the channel's delay of " + text_of_number(options.channel_delay_s) + " s taken out";
   }
   text += by.amplitude().unit.is_charge ? "; 1 pC is taken as 1 V" : "";
 }
