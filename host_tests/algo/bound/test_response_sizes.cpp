@@ -105,8 +105,6 @@ TEST(KernelBounds, RefuseWhatHasNoProof) {
             Status::kOk);
   EXPECT_EQ(kernel.start(ideal, 2e-3, Span<double>()), Status::kInvalidArgument);
   EXPECT_EQ(bound.start(ideal, 2e-3, workspace), Status::kInvalidArgument);
-  EXPECT_EQ(kernel.start(model_of(10, DelayMode::kOfSensor), 2e-3, Span<double>()),
-            Status::kInvalidArgument);
 }
 
 }  // namespace
