@@ -54,11 +54,11 @@ class ScpiPipe(ProgramTest):
 
     def test_long_lines_noise_and_zero_bytes(self) -> None:
         noise = bytes(range(1, 256)).replace(b"\n", b"").replace(b"\r", b"").replace(b"#", b"")
-        text = b"A" * 10_000 + b"\n" + noise + b"\n\0\n*CLS\n*IDN?\n"
+        text = b"A" * 40_000 + b"\n" + noise + b"\n\0\n*CLS\n*IDN?\n"
         done = run(text=text)
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stdout, rb"^emax,host,0,[^\n]*\n$")
-        errors = run(text=b"A" * 10_000 + b"\nSYST:ERR?\n").stdout
+        errors = run(text=b"A" * 40_000 + b"\nSYST:ERR?\n").stdout
         self.assertEqual(errors[:5], b"-363,")
 
     def test_a_thousand_errors(self) -> None:
