@@ -7,8 +7,8 @@ Status Watchdog::start() noexcept {
   if (running_) {
     return Status::kAlreadyRunning;
   }
-  has_begun_ = true;
-  running_ = period_us_ != 0 && do_start() == Status::kOk;
+  has_begun_ = period_us_ != 0;
+  running_ = has_begun_ && do_start() == Status::kOk;
   return running_ ? Status::kOk : Status::kHardwareFault;
 }
 

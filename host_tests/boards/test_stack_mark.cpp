@@ -38,6 +38,7 @@ TEST(NullWatchdog, SaysThatThereIsNone) {
   watchdog.kick();
   EXPECT_EQ(watchdog.start(), emax::Status::kHardwareFault);
   EXPECT_FALSE(watchdog.running());
+  EXPECT_FALSE(watchdog.failed()) << "there is none that could";
   EXPECT_FALSE(watchdog.caused_reset());
 }
 

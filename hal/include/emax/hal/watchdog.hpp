@@ -29,7 +29,8 @@ class Watchdog {
   /// @returns The least time from a kick to the reset. Constant for the life of the object.
   std::uint32_t period_us() const noexcept { return period_us_; }
   bool running() const noexcept { return running_; }
-  /// @returns True if it was started and cannot be relied on.
+  /// @returns True if it was started and cannot be relied on; false on a board that states a period
+  ///   of zero, for none.
   bool failed() const noexcept { return has_begun_ && !running_; }
 
   /// @returns True if the last reset of the board came from its watchdog.
