@@ -8,6 +8,7 @@ much as they are left over. All of it in closed form: hold, filters, shaker, dev
 """
 
 import cmath
+import itertools
 import math
 import re
 import sys
@@ -98,6 +99,58 @@ def corner_hz(response: Response, low_hz: float = 1e3, high_hz: float = 1e5) -> 
     return low_hz
 
 
+def input_gain(p: dict[str, float], frequency_hz: float) -> complex:
+    """Of one channel, from its socket to the converter's pin."""
+    divider_ohm = 1 / (1 / p["R1"] + 1 / p["R2"] + 1 / p["R3"])
+    return divider_ohm / p["R1"] * follower_low_pass(divider_ohm, p["R4"], p["C1"], p["C2"])(frequency_hz)
+
+
+def worst_difference(p: dict[str, float], tolerance: dict[str, float], frequency_hz: float) -> tuple[float, float]:
+    """Between two channels whose parts are as far off as they may be: percent and degrees."""
+    logs = []
+    for signs in itertools.product((-1, 1), repeat=len(tolerance)):
+        off = {name: p[name] * (1 + sign * tolerance[name]) for name, sign in zip(tolerance, signs)}
+        logs.append(cmath.log(input_gain(off, frequency_hz)))
+    amplitudes = [log.real for log in logs]
+    phases = [log.imag for log in logs]
+    return 100 * (max(amplitudes) - min(amplitudes)), math.degrees(max(phases) - min(phases))
+
+
+def bias_times_s(p: dict[str, float]) -> tuple[float, float]:
+    """How late the undriven pin's half of the supply comes to U2 through the low pass, and R13's and R14's through C5."""
+    source_ohm = p["R6"] / 2
+    drive_s = (source_ohm + p["R8"] + p["R15"]) * p["C4"] + (p["R16"] + p["R17"]) * p["C7"]
+    return drive_s, p["R13"] / 2 * p["C5"]
+
+
+def bias_kick_v(p: dict[str, float], rise_s: float) -> float:
+    """Greatest volts behind U2 while the supply rises evenly and the pin is not driven; amplifiers without faults."""
+    step_s = 1e-7
+    middle = first = second_middle = second = bias = kick = 0.0  # Voltages; the middles are those of C6 and C8.
+    source_ohm = p["R6"] / 2 + p["R8"]
+    for i in range(round((rise_s + 2e-3) / step_s)):
+        half_v = SUPPLY_V / 2 * min(1.0, i * step_s / rise_s)
+        into_first = middle / p["R15"]
+        into_second = second_middle / p["R17"]
+        d_middle = ((half_v - middle - first) / source_ohm - into_first) / p["C6"]
+        d_second = ((first - second_middle - second) / p["R16"] - into_second) / p["C8"]
+        middle += step_s * d_middle
+        second_middle += step_s * d_second
+        first += step_s * into_first / p["C4"]
+        second += step_s * into_second / p["C7"]
+        bias += step_s * (half_v - bias) / (p["R13"] / 2 * p["C5"])
+        kick = max(kick, abs(second - bias))
+    return kick * p["R12"] / p["R10"]
+
+
+def rest_v(p: dict[str, float]) -> float:
+    """Volts behind U2 at rest, at most: dividers and difference amplifier of 0.1 %, 10 mV of offset of U2."""
+    gain = p["R12"] / p["R10"]
+    dividers_v = 2 * gain * SUPPLY_V / 2 * 1e-3
+    common_v = SUPPLY_V / 2 * gain / (1 + gain) * 4e-3
+    return dividers_v + common_v + (1 + gain) * 10e-3
+
+
 def main() -> int:
     with open(sys.argv[1], encoding="utf-8") as file:
         readme = file.read()
@@ -127,6 +180,15 @@ def main() -> int:
     # The difference amplifier has the same gain for both of its inputs, so that half of the supply is zero volts.
     assert p["R9"] == p["R10"] and p["R11"] == p["R12"] and p["R6"] == p["R7"] and p["R13"] == p["R14"]
 
+    # Half of the supply comes by both ways at the same time, or nearly so.
+    drive_s, bias_s = bias_times_s(p)
+    kick_v, fast_kick_v = bias_kick_v(p, 1e-3), bias_kick_v(p, 1e-4)
+    print(f"bias: {1e6 * drive_s:.0f} us and {1e6 * bias_s:.0f} us; {kick_v:.3f} V, {fast_kick_v:.2f} V; rest {rest_v(p):.3f} V")
+    assert abs(drive_s - bias_s) < 0.05 * drive_s and rest_v(p) < 0.1 and kick_v < 0.1
+    tolerance = {"R1": 1e-3, "R2": 1e-3, "R3": 1e-3, "R4": 1e-3, "C1": 1e-2, "C2": 1e-2}
+    low_percent, low_deg = worst_difference(p, tolerance, 100.0)
+    high_percent, high_deg = worst_difference(p, tolerance, 5000.0)
+
     in_db = -20 * math.log10(abs(inputs(10e3) * mean_of_conversions(10e3)))
     middle_v = SUPPLY_V * divider_ohm / p["R2"]
     sentences = [
@@ -140,6 +202,10 @@ def main() -> int:
         f"{stiff_percent:.3f} % and {stiff_deg:.4f}°",
         f"{allowed_percent:.3f} % and {allowed_deg:.4f}°",
         f"{wide_deg:.3f}°",
+        f"{1e6 * drive_s:.0f} µs through the low pass and {1e6 * bias_s:.0f} µs through C5",
+        f"{1e3 * kick_v:.0f} mV where the supply rises evenly in 1 ms, {fast_kick_v:.1f} V in 0.1 ms",
+        f"{1e3 * rest_v(p):.0f} mV at rest",
+        f"{low_percent:.1f} % and {low_deg:.2f}° at 100 Hz, {high_percent:.1f} % and {high_deg:.1f}° at 5 kHz",
     ]
     words = " ".join(readme.split())
     missing = [sentence for sentence in sentences if sentence not in words]
