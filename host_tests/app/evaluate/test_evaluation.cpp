@@ -433,21 +433,24 @@ TEST(Evaluation, RefusesUncertainties) {
 }
 
 TEST(Evaluation, RefusesTimesThatTakeTooManyCells) {
-  // 12 cells per period of 4073 Hz: the 65 536 cells of a PC last for 1.3409 s.
+  // 12 cells per period of 4073 Hz: the 65 536 cells of a PC last for 1.3409 s, and the 8192 of a
+  // board for 0.16761 s.
+  static_assert(emax::kMaxCells == 65536 || emax::kMaxCells == 8192);
+  const bool is_pc = emax::kMaxCells == 65536;
   Settings settings = quick_settings();
-  settings.duration_s = 1.341;
+  settings.duration_s = is_pc ? 1.341 : 0.1677;
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy,
-                 "(T = 1.341 s, at most 1.34 s)");
-  EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, 1.341);
+                 is_pc ? "(T = 1.341 s, at most 1.34 s)" : "(T = 0.1677 s, at most 0.167 s)");
+  EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, settings.duration_s);
   // What it says is short enough.
-  settings.duration_s = 1.34;
+  settings.duration_s = is_pc ? 1.34 : 0.167;
   EXPECT_EQ(run_on(emax::test::shared_evaluation()).start_from_model(kTable2, settings),
             Status::kOk);
   settings = quick_settings();
   settings.trend_count = 3;
   settings.trend_s[2] = 2.0;
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend,
-                 "(T = 2 s, at most 1.34 s)");
+                 is_pc ? "(T = 2 s, at most 1.34 s)" : "(T = 2 s, at most 0.167 s)");
   settings = paper_settings(0.1312);
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "longer step");
 }
