@@ -440,17 +440,17 @@ TEST(Evaluation, RefusesTimesThatTakeTooManyCells) {
   Settings settings = quick_settings();
   settings.duration_s = is_pc ? 1.341 : 0.1677;
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy,
-                 is_pc ? "(T = 1.341 s, at most 1.34 s)" : "(T = 0.1677 s, at most 0.167 s)");
+                 is_pc ? "(T = 1.341 s, at most 1.34 s)" : "(T = 0.1677 s, at most 0.1676 s)");
   EXPECT_EQ(emax::test::shared_evaluation().failure.duration_s, settings.duration_s);
   // What it says is short enough.
-  settings.duration_s = is_pc ? 1.34 : 0.167;
+  settings.duration_s = is_pc ? 1.34 : 0.1676;
   EXPECT_EQ(run_on(emax::test::shared_evaluation()).start_from_model(kTable2, settings),
             Status::kOk);
   settings = quick_settings();
   settings.trend_count = 3;
   settings.trend_s[2] = 2.0;
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kTrend,
-                 is_pc ? "(T = 2 s, at most 1.34 s)" : "(T = 2 s, at most 0.167 s)");
+                 is_pc ? "(T = 2 s, at most 1.34 s)" : "(T = 2 s, at most 0.1676 s)");
   settings = paper_settings(0.1312);
   expect_refused(kTable2, settings, Status::kTooManyCells, Stage::kEnergy, "longer step");
 }
