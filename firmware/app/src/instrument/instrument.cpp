@@ -27,7 +27,8 @@ void Instrument::start() noexcept {
   if (ports_.watchdog->caused_reset()) {
     session_.status().report(kWatchdogReset.code, kWatchdogReset.words);
   }
-  if (ports_.watchdog->start() == Status::kHardwareFault) {
+  (void)ports_.watchdog->start();
+  if (ports_.watchdog->failed()) {
     session_.status().report(kNoWatchdog.code, kNoWatchdog.words);
   }
 }
