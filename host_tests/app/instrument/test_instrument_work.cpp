@@ -593,7 +593,8 @@ TEST(InstrumentWatchdog, ThatDoesNotStartIsToldAndNothingIsMeasured) {
       "-240,\"Hardware error;the watchdog does not start: no sweep; switch the board off and "
       "on\"\n";
   InstrumentBench i;
-  ManualWatchdog dead(0);
+  ManualWatchdog dead(100'000);
+  dead.break_down();
   i.other_watchdog = &dead;
   i.switch_on();
   EXPECT_EQ(i.errors(), words);
@@ -601,6 +602,16 @@ TEST(InstrumentWatchdog, ThatDoesNotStartIsToldAndNothingIsMeasured) {
   EXPECT_FALSE(i.instrument->is_working());
   EXPECT_EQ(i.errors(), words);
   EXPECT_EQ(i.ask("*TST?"), "0");
+}
+
+TEST(InstrumentWatchdog, ThatIsNotThereForbidsNoSweep) {
+  InstrumentBench i;
+  ManualWatchdog none(0);
+  i.other_watchdog = &none;
+  i.switch_on();
+  EXPECT_EQ(i.errors(), "");
+  (void)i.ask("INIT");
+  EXPECT_TRUE(i.instrument->is_working());
 }
 
 TEST(InstrumentWatchdog, ThatHasResetTheBoardIsTold) {
