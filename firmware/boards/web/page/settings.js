@@ -22,12 +22,18 @@ function commandsOf(table) {
   });
 }
 
-// *LRN? as [{header, value}].
+// *LRN? as [{header, value}]. What limits others is freed first, so some come twice: the last value holds.
 function settingsOf(learnt) {
-  return learnt.split(';').map((part) => {
-    const [header, ...value] = part.replace(/^:/, '').split(' ');
-    return {header, value: value.join(' ')};
-  });
+  const values = new Map();
+  let path = '';
+  for (const part of learnt.split(';')) {
+    const [written, ...value] = part.split(' ');
+    const header = written.startsWith(':') ? written.slice(1) : path + written;
+    path = header.slice(0, header.lastIndexOf(':') + 1);
+    values.delete(header);
+    values.set(header, value.join(' '));
+  }
+  return [...values].map(([header, value]) => ({header, value}));
 }
 
 class SettingsForm {
