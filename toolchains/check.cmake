@@ -21,7 +21,7 @@ endforeach()
 
 list(LENGTH configurations count)
 message(NOTICE
-  "emax: builds ${count} configurations and runs their tests: half an hour on two idle cores, 1 GB in build/.")
+  "emax: builds ${count} configurations and runs their tests: about 45 minutes on two idle cores, 1 GB in build/.")
 
 set(subtrees "")
 set(programs "")
