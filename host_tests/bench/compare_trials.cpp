@@ -34,21 +34,14 @@ EnergySearch search;
 EnergyTrials trials;
 std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
 
-constexpr ErrorMeasure kError = {Criterion::kIntegralSquareError, {}};
-constexpr ErrorMeasure kDifference = {Criterion::kEnergyDifference, {}};
-constexpr ErrorMeasure kMatched = {Criterion::kInBandError, {DelayMode::kOfSensor, 0.0}};
+struct Figure {
+  const char* name;
+  ErrorMeasure measure;
+};
 
-const char* name_of(const ErrorMeasure& measure) {
-  switch (measure.criterion) {
-    case Criterion::kIntegralSquareError:
-      return "ise";
-    case Criterion::kEnergyDifference:
-      return "difference";
-    case Criterion::kInBandError:
-      break;
-  }
-  return "matched";
-}
+constexpr Figure kError = {"ise", {Criterion::kIntegralSquareError, {}}};
+constexpr Figure kDifference = {"difference", {Criterion::kEnergyDifference, {}}};
+constexpr Figure kMatched = {"matched", {Criterion::kInBandError, {DelayMode::kOfSensor, 0.0}}};
 
 bool search_whole(const ModalModel& model, const SearchSettings& settings, MaximumEnergy& found) {
   Status status = search.start(model, settings);
@@ -95,14 +88,13 @@ Summary summary_of(std::vector<double> energies) {
 
 double apart(double a, double b) { return b == 0.0 ? std::fabs(a) : std::fabs(a / b - 1.0); }
 
-void compare(const Case& c, const ErrorMeasure& measure, Distribution distribution,
-             bool gain_follows) {
-  std::printf("%-34s %-10s %-6s %-7s", c.name.c_str(), name_of(measure),
+void compare(const Case& c, const Figure& figure, Distribution distribution, bool gain_follows) {
+  std::printf("%-34s %-10s %-6s %-7s", c.name.c_str(), figure.name,
               distribution == Distribution::kBox ? "box" : "normal",
               gain_follows ? "follows" : "fixed");
   ModalModel model{};
-  if (model.set(c.device, butterworth({c.order, c.cutoff_hz, c.device.sensitivity}), measure) !=
-      Status::kOk) {
+  if (model.set(c.device, butterworth({c.order, c.cutoff_hz, c.device.sensitivity}),
+                figure.measure) != Status::kOk) {
     std::printf(" no such error system\n");
     return;
   }

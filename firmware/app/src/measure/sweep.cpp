@@ -398,7 +398,8 @@ void Sweep::share_effects(double check_change) noexcept {
   results.shared = shared_effects(results.settings, work_.format_.sample_rate_hz,
                                   squares > 0.0 ? sqrt(squares) : 0.0, ratio_factor(), highest_hz,
                                   sqrt(device2) / work_.scales_.device_v);
-  // What the noise of two checks hides may have drifted all the same.
+  // The points keep what was seen, by which chi-square is judged; the parameters also what the
+  // noise of two checks may have hidden.
   const double drift = norm(results.check_after) > 0.0
                            ? sqrt(std::max(squares, kHiddenShare * check_u * check_u))
                            : 0.0;
