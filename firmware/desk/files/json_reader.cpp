@@ -1,7 +1,8 @@
 // JSON text as a tree of values, by recursive descent of limited depth.
 #include "desk/files/json_reader.hpp"
 
-#include <set>
+#include <algorithm>
+#include <numeric>
 
 #include "emax/base/decimal.hpp"
 #include "emax/base/elementary.hpp"
@@ -15,6 +16,23 @@ namespace emax::desk {
 namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+/// The first member whose name one before it has; their number if there is none.
+std::size_t first_repeated(const std::vector<JsonValue::Member>& members) {
+  std::vector<std::size_t> order(members.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+    const int less = members[one].first.compare(members[other].first);
+    return less < 0 || (less == 0 && one < other);
+  });
+  std::size_t first = members.size();
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (members[order[i]].first == members[order[i - 1]].first) {
+      first = std::min(first, order[i]);
+    }
+  }
+  return first;
+}
 
 }  // namespace
 
@@ -111,7 +129,7 @@ class JsonParser final {
 
   bool take_object(JsonValue& value, std::size_t depth) {
     value.kind_ = JsonValue::Kind::kObject;
-    std::set<std::string> names;
+    std::vector<std::size_t> ends_of_names;
     ++at_;
     skip_space();
     if (take('}')) {
@@ -123,9 +141,7 @@ class JsonParser final {
       if (!take_string(member.first)) {
         return false;
       }
-      if (!names.insert(member.first).second) {
-        return fail("a name for the second time");
-      }
+      ends_of_names.push_back(at_);
       skip_space();
       if (!take(':')) {
         return fail("expected ':'");
@@ -136,7 +152,15 @@ class JsonParser final {
       value.members_.push_back(std::move(member));
       skip_space();
     } while (take(','));
-    return take('}') || fail("expected ',' or '}'");
+    if (!take('}')) {
+      return fail("expected ',' or '}'");
+    }
+    const std::size_t again = first_repeated(value.members_);
+    if (again < ends_of_names.size()) {
+      at_ = ends_of_names[again];
+      return fail("a name for the second time");
+    }
+    return true;
   }
 
   bool take_array(JsonValue& value, std::size_t depth) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstring>
 #include <new>
-#include <set>
 #include <string>
 
 #include "emax/base/decimal.hpp"
@@ -61,58 +60,6 @@ void __throw_logic_error(const char* /*what*/) { __builtin_trap(); }
 void __throw_out_of_range_fmt(const char* /*what*/, ...) { __builtin_trap(); }
 void __throw_bad_alloc() { __builtin_trap(); }
 void __throw_bad_array_new_length() { __builtin_trap(); }
-
-// Sets, without their balance: here they hold the few names of an object's members.
-
-_Rb_tree_node_base* _Rb_tree_increment(_Rb_tree_node_base* node) noexcept {
-  if (node->_M_right != nullptr) {
-    return _Rb_tree_node_base::_S_minimum(node->_M_right);
-  }
-  _Rb_tree_node_base* above = node->_M_parent;
-  while (node == above->_M_right) {
-    node = above;
-    above = above->_M_parent;
-  }
-  return node->_M_right != above ? above : node;
-}
-
-_Rb_tree_node_base* _Rb_tree_decrement(_Rb_tree_node_base* node) noexcept {
-  if (node->_M_color == _S_red && node->_M_parent->_M_parent == node) {
-    return node->_M_right;  // Of the header, which is behind the last one.
-  }
-  if (node->_M_left != nullptr) {
-    return _Rb_tree_node_base::_S_maximum(node->_M_left);
-  }
-  _Rb_tree_node_base* above = node->_M_parent;
-  while (node == above->_M_left) {
-    node = above;
-    above = above->_M_parent;
-  }
-  return above;
-}
-
-void _Rb_tree_insert_and_rebalance(const bool is_left, _Rb_tree_node_base* node,
-                                   _Rb_tree_node_base* parent,
-                                   _Rb_tree_node_base& header) noexcept {
-  node->_M_parent = parent;
-  node->_M_left = nullptr;
-  node->_M_right = nullptr;
-  node->_M_color = _S_black;  // Red is the header's mark.
-  if (is_left) {
-    parent->_M_left = node;  // Of the header, too, when it is the first node.
-    if (parent == &header) {
-      header._M_parent = node;
-      header._M_right = node;
-    } else if (parent == header._M_left) {
-      header._M_left = node;
-    }
-  } else {
-    parent->_M_right = node;
-    if (parent == header._M_right) {
-      header._M_right = node;
-    }
-  }
-}
 
 }  // namespace std
 
