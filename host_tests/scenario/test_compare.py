@@ -269,7 +269,10 @@ class CompareInBand(Comparing, ProgramTest):
                  result(matched=2.0, device="other")]
         for by in ["matched", "band", "energy"]:
             for i, each in enumerate(files):
-                each["energy"]["E"], each["band"]["rms_percent"] = (1 + i) * 1e-3, 5.0 + i
+                energy = (1 + i) * 1e-3
+                each["energy"]["E"] = energy
+                each["uncertainty"] |= {"interval": [energy - 2e-5, energy + 2e-5], "shortest": [energy - 2e-5, energy + 2e-5]}
+                each["band"] |= figure(5.0 + i, 0.01, 0.002 * 4)
             found = self.compare(*files, by=by)
             self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 3), ("2.json", 2, 3)])
             self.assertEqual([(p["compared"], p["told_apart"], p["proven"]) for p in found["pairs"]],
@@ -326,7 +329,7 @@ class CompareInBand(Comparing, ProgramTest):
         self.assertEqual(self.ranks(found), [("0.json", 1, 1), ("1.json", 2, 2), ("2.json", 3, 3)])
         text = self.succeed("compare", "0.json", "1.json", "2.json")
         self.assertEqual(text.count("WARNING"), 1)
-        self.assertRegex(text, "WARNING: Warned of by the report of A and C: u is .doubtful\\.")
+        self.assertRegex(text, "WARNING: The report of A and C warns: u is .doubtful\\.")
         self.assertNotIn("\x1b", text)
 
     def test_other_warnings_are_no_marks(self):
@@ -417,7 +420,7 @@ class CompareOutput(Comparing, ProgramTest):
                     self.assertRegex(row[: head.index(title) + len(title)], f" {number}$")
             # A name goes on below, to its end.
             table = text.split("  rank ")[1].split("\n\n")[0]
-            self.assertRegex(table, r"\n +(a long |long |name |a )+17\n")
+            self.assertRegex(table, r"\n +(a long |long |name |a )+17[ \n]")
             self.assertNotIn("...a", table)
 
     def test_bound_in_fewer_digits_is_a_bound(self):
@@ -564,7 +567,7 @@ class ComparePage(Comparing, ProgramTest):
         self.assertIn("<svg", page)
         self.assertNotIn("SIMULATION", page)
         page = self.page(result(matched=1.196, device="A"), result(matched=1.197, device="B"))
-        self.assertIn("<dt>Smallest error: the results do not say which of</dt><dd>A and B</dd>", page)
+        self.assertIn("<dt>Smallest error: the results do not say which one's</dt><dd>A or B</dd>", page)
         self.assertIn("<strong>CANNOT BE TOLD APART</strong>", page)
 
     def test_powers_of_ten_as_in_print(self):

@@ -16,7 +16,7 @@ using app::Warning;
 
 constexpr Warning kMarking[] = {
     Warning::kFit,           Warning::kOpenDamping, Warning::kDisagreement, Warning::kLowFrequency,
-    Warning::kShortTime,     Warning::kGuard,       Warning::kCrowded,      Warning::kRedrawn,
+    Warning::kShortTime,     Warning::kShortInBand, Warning::kGuard,       Warning::kCrowded,      Warning::kRedrawn,
     Warning::kNoUncertainty, Warning::kMeasurement, Warning::kEnded,        Warning::kDataSheet,
     Warning::kChange};
 

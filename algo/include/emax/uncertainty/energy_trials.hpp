@@ -90,6 +90,8 @@ class EnergyTrials {
 
   /// @returns The device of one trial; the estimate if there is none, see `is_exhausted()`.
   Accelerometer device(std::uint32_t trial) noexcept;
+  /// @returns S of the trial last begun, or last asked for its device.
+  double sensitivity() const noexcept { return draws_.sensitivity(); }
   /// @returns How often trials were drawn again because a draw was no device.
   std::uint32_t redraws() const noexcept { return draws_.redraws(); }
   /// @returns Whether a trial has been drawn again DeviceDraws::kMaxRedraws times in vain; its
