@@ -169,9 +169,9 @@ Reach reach_of(const Result& result, FigureKind by) noexcept {
   constexpr double kUsual = 0.95;
   const Reach reach = {figure.value - figure.low, figure.high - figure.value};
   // An interval of less than what k = 2 stands for tells nothing apart that U does not.
-  return result.probability < kUsual ? Reach{std::max(reach.down, figure.expanded),
-                                             std::max(reach.up, figure.expanded)}
-                                     : reach;
+  return result.probability < kUsual
+             ? Reach{std::max(reach.down, figure.expanded), std::max(reach.up, figure.expanded)}
+             : reach;
 }
 
 double together(double one, double other) noexcept { return sqrt(one * one + other * other); }

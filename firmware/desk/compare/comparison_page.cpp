@@ -90,17 +90,18 @@ void append_headline(std::string& html, const Comparison& comparison) {
   const std::vector<const Result*> leaders = leaders_of(comparison);
   const bool is_alone = leaders.size() == 1;
   html += "<dl class=\"headline\">\n";
-  const bool is_difference = comparison.by == FigureKind::kEnergy &&
-                             comparison.results.front().criterion == "difference";
+  const bool is_difference =
+      comparison.by == FigureKind::kEnergy && comparison.results.front().criterion == "difference";
   const std::string what = is_difference ? "energy difference" : "error";
   append_figure(html, " class=\"first\"",
                 "Smallest " + what + (is_alone ? "" : ": the results do not say which one's"),
                 quoted(list_of(leaders, "or").c_str()));
   const Result& least = comparison.results.front();
   const Result& largest = comparison.results.back();
-  append_figure(html, "",
-                (is_alone ? "Its " : "Least ") + what + " found" + words_of_range(comparison, least),
-                figure_with_uncertainty(comparison, least));
+  append_figure(
+      html, "",
+      (is_alone ? "Its " : "Least ") + what + " found" + words_of_range(comparison, least),
+      figure_with_uncertainty(comparison, least));
   append_figure(html, "", "Largest " + what + " found" + words_of_range(comparison, largest),
                 figure_with_uncertainty(comparison, largest));
   html += "</dl>\n";

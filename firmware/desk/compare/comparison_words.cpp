@@ -384,9 +384,9 @@ std::vector<std::string> row_of(const Comparison& comparison, std::size_t index,
 
 // Where the interval of a figure stands in the place of its U, and what it is mostly made of.
 std::string words_on_one_side(const Comparison& comparison) {
-  const bool any = std::any_of(
-      comparison.results.begin(), comparison.results.end(),
-      [&](const Result& result) { return comparison.figure(result).is_one_sided; });
+  const bool any =
+      std::any_of(comparison.results.begin(), comparison.results.end(),
+                  [&](const Result& result) { return comparison.figure(result).is_one_sided; });
   if (!any) {
     return "";
   }
@@ -424,9 +424,9 @@ std::string mark_of(const Result& result) {
 
 std::string criterion_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
-  const bool has_one_delay =
-      std::all_of(comparison.results.begin(), comparison.results.end(),
-                  [&](const Result& other) { return other.energy_delay.is_like(first.energy_delay); });
+  const bool has_one_delay = std::all_of(
+      comparison.results.begin(), comparison.results.end(),
+      [&](const Result& other) { return other.energy_delay.is_like(first.energy_delay); });
   return has_one_delay ? criterion_of(first)
                        : "in-band error, for some with a delay taken out and for some without";
 }
@@ -456,12 +456,12 @@ std::string banner_of(const Comparison& comparison) {
 
 std::vector<Fact> conditions_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
-  return {
-      {"Filter", filter_of(first)},
-      {"Signal", signal_of(comparison)},
-      {"Criterion", criterion_of(comparison) + (first.method == "paper" ? ", the paper's method"
-                                                                   : ", the best signal found")},
-      {"Ranked by", words_of_rank(comparison)}};
+  return {{"Filter", filter_of(first)},
+          {"Signal", signal_of(comparison)},
+          {"Criterion",
+           criterion_of(comparison) +
+               (first.method == "paper" ? ", the paper's method" : ", the best signal found")},
+          {"Ranked by", words_of_rank(comparison)}};
 }
 
 ComparisonTable table_of(const Comparison& comparison) {

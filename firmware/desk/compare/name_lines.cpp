@@ -72,8 +72,7 @@ std::string last_of(const Result& result) {
 
 std::string name_of(const Result& result) {
   const std::string device = printable(result.device);
-  const std::string name =
-      result.serial.empty() ? device : device + " " + printable(result.serial);
+  const std::string name = result.serial.empty() ? device : device + " " + printable(result.serial);
   return result.has_namesake ? name + " (" + result.file + ")" : name;
 }
 
@@ -138,7 +137,8 @@ std::string list_of(const std::vector<const Result*>& results, const char* last)
     text += i == 0 ? "" : i + 1 == count ? " " + std::string(last) + " " : ", ";
     text += short_name_of(*results[i]);
   }
-  return named == count ? text : text + " " + last + " " + std::to_string(count - named) + " others";
+  return named == count ? text
+                        : text + " " + last + " " + std::to_string(count - named) + " others";
 }
 
 }  // namespace emax::desk

@@ -97,8 +97,7 @@ void Evaluation::refuse_figure(Status status) noexcept {
   } else {
     figure().is_done = true;
     figure().status = status;
-    figure().is_short =
-        results_.settings.duration_s < kMuchShorter * results_.band_settling.time_s;
+    figure().is_short = results_.settings.duration_s < kMuchShorter * results_.band_settling.time_s;
   }
   work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
 }
@@ -245,8 +244,8 @@ void Evaluation::begin_figure_trials() noexcept {
   }
 }
 
-/// Whether the gain follows S where E has an uncertainty, as it does for the figures of the band: an
-/// error of S is then one of gain, and none in band.
+/// Whether the gain follows S where E has an uncertainty, as it does for the figures of the band:
+/// an error of S is then one of gain, and none in band.
 bool Evaluation::holds_sensitivity() const noexcept {
   return results_.settings.criterion == Criterion::kInBandError &&
          results_.settings.gain_mode != GainMode::kFixed;
@@ -351,9 +350,8 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
 void Evaluation::note_root(std::uint32_t trial, double energy_v2s, bool is_stored) noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   EvaluationWorkspace::Scatter& root = part.root;
-  const bool is_wanted =
-      results_.stage >= Stage::kBand ||
-      (are_trials_normal() && results_.stage == Stage::kMonteCarlo);
+  const bool is_wanted = results_.stage >= Stage::kBand ||
+                         (are_trials_normal() && results_.stage == Stage::kMonteCarlo);
   if (!is_wanted || part.monte_carlo.pass() != 1) {
     return;
   }
@@ -361,8 +359,8 @@ void Evaluation::note_root(std::uint32_t trial, double energy_v2s, bool is_store
   const bool is_figure = results_.stage == Stage::kBand || results_.stage == Stage::kMatched;
   const bool is_held =
       results_.settings.gain_mode != GainMode::kFixed && (is_figure || holds_sensitivity());
-  const double sensitivity = is_stored && !is_held ? part.trials.device(trial).sensitivity
-                                                   : part.trials.sensitivity();
+  const double sensitivity =
+      is_stored && !is_held ? part.trials.device(trial).sensitivity : part.trials.sensitivity();
   const double value = sqrt(energy_v2s) * (estimate.sensitivity / sensitivity);
   if (root.count == 0) {
     root.origin = value;

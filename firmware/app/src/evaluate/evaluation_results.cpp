@@ -94,7 +94,8 @@ CoverageInterval widened(const CoverageInterval& interval, double figure) noexce
 bool is_one_sided(double figure, double expanded, const CoverageInterval& interval) noexcept {
   const double below = figure - interval.low;
   const double above = interval.high - figure;
-  return expanded > figure || (expanded > 0.0 && (2.0 * below < above || 2.0 * above < below));
+  return expanded > 0.0 && interval.high > interval.low &&
+         (expanded > figure || 2.0 * below < above || 2.0 * above < below);
 }
 
 const char* FigureResults::refusal() const noexcept {
@@ -216,7 +217,8 @@ double EvaluationResults::percent_of(double energy) const noexcept {
   return kPercent * sqrt(energy / settings.duration_s) / (device.estimate.sensitivity * limit_mps2);
 }
 
-CoverageInterval EvaluationResults::interval_percent_of(const FigureResults& figure) const noexcept {
+CoverageInterval EvaluationResults::interval_percent_of(
+    const FigureResults& figure) const noexcept {
   const CoverageInterval& shortest = figure.uncertainty.shortest;
   return widened({percent_of(shortest.low), percent_of(shortest.high)},
                  percent_of(figure.energy_v2s));

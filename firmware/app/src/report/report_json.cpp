@@ -360,8 +360,8 @@ void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
   }
   json.open("band");
   write_figure(results, results.band, json);
-  write_number_or_null("settling_time_s", results.band_settling.found,
-                       results.band_settling.time_s, json);
+  write_number_or_null("settling_time_s", results.band_settling.found, results.band_settling.time_s,
+                       json);
   if (matched.exists()) {
     json.open("matched");
     json.words("delay_mode",

@@ -225,7 +225,8 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kRedrawn:
       return "more than 1 % of the draws were no device and were made again: E is not normal there";
     case Warning::kNoUncertainty:
-      return "the uncertainties leave what a device may be, so E has none; check them and their units";
+      return "the uncertainties leave what a device may be, so E has none; check them and their "
+             "units";
     case Warning::kRough:
       return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
              "second digit; give a shorter T";

@@ -256,8 +256,8 @@ struct EvaluationResults {
   double xi() const noexcept { return maximum.energy / settings.duration_s; }
   /// @returns 100 sqrt(E/T)/(S a) of an energy, S being the estimate; not a number below 0.
   double percent_of(double energy_v2s) const noexcept;
-  /// @returns The shortest interval of a figure that has an uncertainty, widened to hold the figure,
-  /// in percent as by `percent_of()`.
+  /// @returns The shortest interval of a figure that has an uncertainty, widened to hold the
+  /// figure, in percent as by `percent_of()`.
   CoverageInterval interval_percent_of(const FigureResults& figure) const noexcept;
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
   double rms_error_v() const noexcept;

@@ -80,7 +80,15 @@ class EvaluationWorkspace {
     TrialPart trial;
   };
 
-  enum class FigurePhase : std::uint8_t { kSettling, kSearch, kBound, kPrediction, kTrials, kGuard, kEnd };
+  enum class FigurePhase : std::uint8_t {
+    kSettling,
+    kSearch,
+    kBound,
+    kPrediction,
+    kTrials,
+    kGuard,
+    kEnd
+  };
   static_assert(!kHasDefaultCapacities ||
                 sizeof(FigureModel) <= sizeof(double) * kWorkspaceNumbers);
 

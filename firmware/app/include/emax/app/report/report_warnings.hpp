@@ -33,12 +33,11 @@ enum class Warning : std::uint8_t {
 };
 
 inline constexpr Warning kWarnings[] = {
-    Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
-    Warning::kLowFrequency,  Warning::kShortTime,   Warning::kShortInBand,   Warning::kFewTrials,
-    Warning::kNotStable,
-    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn, Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,   Warning::kEnded,
-    Warning::kDataSheet,     Warning::kChange,
+    Warning::kFit,          Warning::kOpenDamping,   Warning::kOnlyS,       Warning::kDisagreement,
+    Warning::kLowFrequency, Warning::kShortTime,     Warning::kShortInBand, Warning::kFewTrials,
+    Warning::kNotStable,    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn,
+    Warning::kRedrawn,      Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,
+    Warning::kEnded,        Warning::kDataSheet,     Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
