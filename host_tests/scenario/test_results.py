@@ -309,8 +309,8 @@ class FigureValues(ProgramTest):
         text = self.succeed(*quick, "--criterion", "difference")
         self.assertIn("sqrt(E/T)   ", text)
         self.assertNotIn("RMS error", text)
-        text = self.succeed(*quick, "--criterion", "band", "--cutoff", "500", "--reference-delay", "none")
-        self.assertRegex(" ".join(text.split()), r"give at least the settling time, 8\.\d\d? ms")
+        text = self.succeed(*quick, "--criterion", "band", "--order", "15", "--reference-delay", "none")
+        self.assertRegex(" ".join(text.split()), r"give at least the settling time, 6\.\d\d? ms")
 
     def test_delays_are_told(self):
         quick = ["--model", PAPER, "--trend", "none"]
