@@ -136,17 +136,19 @@ double expanded(const app::EnergyUncertainty& known) {
   return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
 }
 
+bool is_one_sided(const EvaluationResults& results, const app::FigureResults& figure) {
+  const double u = expanded(figure.uncertainty);
+  return u > 0.0 && app::is_one_sided(results.percent_of(figure.energy_v2s), u,
+                                      results.interval_percent_of(figure));
+}
+
 // With U, or with the interval where the figure is at one end of it.
 std::string in_band_value(const EvaluationResults& results, const app::FigureResults& figure) {
   const double percent = results.percent_of(figure.energy_v2s);
-  const double u = expanded(figure.uncertainty);
-  if (!(u > 0.0)) {
-    return percentage(percent, 0.0) + " of S&nbsp;a";
+  if (!is_one_sided(results, figure)) {
+    return percentage(percent, expanded(figure.uncertainty)) + " of S&nbsp;a";
   }
   const CoverageInterval interval = results.interval_percent_of(figure);
-  if (!app::is_one_sided(percent, u, interval)) {
-    return percentage(percent, u) + " of S&nbsp;a";
-  }
   return percentage(percent, 0.0) + " of S&nbsp;a; " + words_of([&](TextWriter& out) {
            out.general(kPercent * results.settings.probability, 6).text(" % interval ");
            out.text(range_text(interval.low, interval.high).c_str()).text(" %");
@@ -155,9 +157,12 @@ std::string in_band_value(const EvaluationResults& results, const app::FigureRes
 
 void append_in_band(std::string& html, const char* kind, const EvaluationResults& results,
                     const app::FigureResults& figure) {
-  const char* const name = &figure == &results.matched
-                               ? "Worst in-band error, constant delay taken out (U, k = 2)"
-                               : "Worst in-band error, with its delay";
+  std::string name = "Worst in-band error, with its delay";
+  if (&figure == &results.matched) {
+    name =
+        std::string("Worst in-band error, constant delay taken out") +
+        (is_one_sided(results, figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
+  }
   append_figure(html, kind, name, in_band_value(results, figure));
 }
 

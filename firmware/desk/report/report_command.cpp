@@ -206,6 +206,23 @@ Problem keep_early_points(const Problem& fault, const std::vector<EarlyPoint>& p
   return kept;
 }
 
+// Two remarks in one line.
+Problem both(const Problem& first, const Problem& second) {
+  const bool is_single = first.line.empty() || second.line.empty();
+  return {ExitStatus::kDone, first.line + (is_single ? "" : "; ") + second.line};
+}
+
+// What the star at the figures means, and whose E it is.
+std::string mark_of(const app::EvaluationResults& evaluation, const app::ReportContext& context,
+                    const Problem& criterion_changed) {
+  const std::string mark = mark_of_figures(evaluation, context);
+  if (criterion_changed.line.empty()) {
+    return mark;
+  }
+  return std::string("E of the criterion asked for is hidden by rounding: below it is that of ") +
+         "the in-band error." + (mark.empty() ? "" : "\n  " + mark);
+}
+
 bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
   return !options.points_path.empty() && !(options.damping > 0.0) &&
          evaluation.stage == app::Stage::kFailed &&
@@ -255,11 +272,7 @@ Problem run_report(Span<const std::string_view> arguments) {
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};
-  std::string mark = problem_of_work ? "" : mark_of_figures(evaluation, context);
-  if (!criterion_changed.line.empty()) {
-    mark = std::string("E of the criterion asked for is hidden by rounding: below it is that of ") +
-           "the in-band error." + (mark.empty() ? "" : "\n  " + mark);
-  }
+  const std::string mark = problem_of_work ? "" : mark_of(evaluation, context, criterion_changed);
   context.mark = or_null(mark);
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
@@ -286,13 +299,10 @@ Problem run_report(Span<const std::string_view> arguments) {
   if (is_of_rest && !problem) {
     return problem_of_work;
   }
-  if (!problem && !criterion_changed.line.empty()) {
-    return criterion_changed;
-  }
   if (!problem && remark.line.empty()) {
     remark = bench.unstruck();
   }
-  return problem ? problem : remark;
+  return problem ? problem : both(criterion_changed, remark);
 }
 
 std::string help_on_report() {

@@ -248,6 +248,40 @@ TEST(Report, FiguresOfAnySizeKeepTheirColumns) {
   }
 }
 
+TEST(Report, GuardThatDisagreesSaysByHowMuchOrThatItHasFailed) {
+  (void)evaluated(kTable2, quick_settings());
+  EvaluationResults& results = emax::test::shared_evaluation();
+  results.guard.disagreements = 1;
+  results.guard.largest_excess = 0.0123F;
+  std::string report = report_of(results);
+  EXPECT_TRUE(says(report, "found up to 1.23 % more energy"));
+  EXPECT_FALSE(says(report, "smaller uncertainties"));
+  results.guard.largest_excess = 0.0F;
+  report = report_of(results);
+  EXPECT_FALSE(says(report, "0 % more energy"));
+  EXPECT_TRUE(says(report, "in these trials the search has failed"));
+}
+
+TEST(Report, AnIntervalStandsInThePlaceOfUAtTheEndOfADistribution) {
+  (void)evaluated(kTable2, quick_settings());
+  EvaluationResults& results = emax::test::shared_evaluation();
+  const double unit = results.percent_of(1.0);
+  const auto energy = [unit](double percent) { return (percent / unit) * (percent / unit); };
+  results.matched.energy_v2s = energy(0.0001385);
+  results.matched.uncertainty.u_percent = 0.0073;
+  results.matched.uncertainty.shortest = {energy(0.0002), energy(0.0239)};
+  std::string report = report_of(results);
+  EXPECT_TRUE(
+      says(line_with(report, "In band, constant delay taken out"), "0.0001385    0 to 0.024 "));
+  EXPECT_TRUE(says(report, "+-U is no measure"));
+  // As far below the figure as above it.
+  results.matched.energy_v2s = energy(0.0120);
+  results.matched.uncertainty.u_percent = 0.0059;
+  report = report_of(results);
+  EXPECT_TRUE(says(line_with(report, "In band, constant delay taken out"), "0.012         0.012 "));
+  EXPECT_FALSE(says(report, "+-U is no measure"));
+}
+
 TEST(Report, InBandNamesItsDelayAndWhatItsUncertaintyIsOf) {
   Settings settings = quick_settings();
   settings.criterion = Criterion::kInBandError;
