@@ -381,8 +381,12 @@ void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& o
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
       out.text(separator).text("{\"about\": \"").text(about(warning));
-      const std::string words = sentence_of(words_of(warning), least_time_s(warning, evaluation));
-      out.text("\", \"text\": \"").text(words.c_str()).text("\"}");
+      out.text("\", \"text\": \"").text(words_of(warning)).text("\"");
+      const double least_s = least_time_s(warning, evaluation);
+      if (least_s > 0.0) {
+        out.text(", \"least_time_s\": ").exact(least_s);
+      }
+      out.text("}");
       separator = ", ";
     }
   }

@@ -180,7 +180,8 @@ double least_time_s(Warning warning, const EvaluationResults& results) noexcept 
     return results.settling_time.time_s;
   }
   const bool is_other = results.settings.criterion != Criterion::kInBandError;
-  return warning == Warning::kShortInBand && is_other ? results.band_settling.time_s : 0.0;
+  const bool has_row = is_other && results.band.exists();
+  return warning == Warning::kShortInBand && has_row ? results.band_settling.time_s : 0.0;
 }
 
 std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
