@@ -107,8 +107,8 @@ TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {
 }
 
 TEST(EvaluationFigures, DefaultTrendTakesNoMinutes) {
-  // 12 cells in each of 500 periods per ms: 12000 at 2 ms, and 24000 to 60000 for the others, which a
-  // PC has room for.
+  // 12 cells in each of 500 periods per ms: 12000 at 2 ms, and 24000 to 60000 for the others, which
+  // a PC has room for.
   if (emax::kMaxCells < 65536) {
     return;
   }
