@@ -292,6 +292,7 @@ TrialSettings Evaluation::trial_settings(Distribution distribution) const noexce
   trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings, settings.duration_s);
   trial_settings.pieces = work_.pieces_;
+  trial_settings.expected_trials = settings.adaptive ? 0U : settings.trials;
   return trial_settings;
 }
 
