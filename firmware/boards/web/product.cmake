@@ -33,7 +33,11 @@ emax_add_web_module(emax_${EMAX_BOARD_NAME}
     ${desk}/scpi/command_list.cpp)
 target_include_directories(emax_${EMAX_BOARD_NAME} PRIVATE
   ${EMAX_BOARD_COMMON}/include ${PROJECT_SOURCE_DIR}/firmware)
-target_compile_options(emax_app PRIVATE -Os)
+target_compile_options(emax_app PRIVATE -Oz)
+foreach(library IN ITEMS emax_base emax_algo)
+  get_target_property(seldom ${library} EMAX_SELDOM)
+  set_source_files_properties(${seldom} TARGET_DIRECTORY ${library} PROPERTIES COMPILE_OPTIONS -Oz)
+endforeach()
 target_link_libraries(emax_${EMAX_BOARD_NAME} PRIVATE emax_app emax_sim emax_freestanding)
 
 # What the PC program does beside it: the same sources, with memory of a fixed size for their strings.
