@@ -89,9 +89,69 @@ TEST_F(Loopback, LeavesTheShakerAlone) {
 
 TEST_F(Loopback, NamesAFaultOfTheStream) {
   sim::BenchSettings settings;
-  settings.fault = {sim::FaultKind::kLostBlock, 60'000};
+  settings.fault = {sim::FaultKind::kLateBlock, 60'000};
   EXPECT_FALSE(run(settings));
-  EXPECT_EQ(sequencer_.failure().status, Status::kLostBlock);
+  EXPECT_EQ(sequencer_.failure().status, Status::kLateBlock);
+}
+
+// In the silence, and again at the third frequency of the second run: the third one finds what a
+// bench without losses shows, but for other noise.
+TEST_F(Loopback, CountsLostBlocksAndBeginsAnew) {
+  ASSERT_TRUE(run(off_bench(2)));
+  const LoopbackResults without = *sequencer_.loopback();
+  EXPECT_EQ(without.lost_blocks, 0U);
+  sim::BenchSettings settings = off_bench(2);
+  settings.fault = {sim::FaultKind::kLostBlock, 10'000};
+  settings.second_fault = {sim::FaultKind::kLostBlock, 100'000};
+  ASSERT_TRUE(run(settings));
+  const LoopbackResults& found = *sequencer_.loopback();
+  EXPECT_EQ(found.lost_blocks, 2U);
+  EXPECT_NEAR(found.latency_frames, without.latency_frames, 0.05);
+  EXPECT_NEAR(found.ratio / without.ratio, 1.0, 2e-4);
+  EXPECT_NEAR(found.skew_s, without.skew_s, 2e-8);
+}
+
+// Loses three blocks of a hundred, always; or says that some are lost, and not how many.
+class LossyWire final : public hal::AnalogStream {
+ public:
+  explicit LossyWire(bool is_told) noexcept
+      : AnalogStream({1e5, 10.0, 10.0, 64, 0}), is_told_(is_told) {}
+
+ private:
+  Status do_start() noexcept override {
+    frames_ = 0;
+    return Status::kOk;
+  }
+  hal::Exchange do_exchange(Span<const hal::Word> drive,
+                            Span<hal::Frame> response) noexcept override {
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      response[i] = {drive[i], drive[i]};
+    }
+    const bool is_lost = frames_ == 100 * drive.size();
+    frames_ += is_lost ? 4 * drive.size() : drive.size();
+    return {is_lost && is_told_ ? Status::kLostBlock : Status::kOk, frames_ - drive.size()};
+  }
+  std::uint32_t do_ramp_to_zero(hal::Word) noexcept override { return 256; }
+  void do_stop() noexcept override {}
+  bool do_drive_is_at_zero() const noexcept override { return true; }
+
+  std::uint64_t frames_ = 0;
+  bool is_told_;
+};
+
+TEST_F(Loopback, GivesUpWhereBlocksAreLostAgainAndAgain) {
+  for (const bool is_told : {false, true}) {
+    LossyWire wire(is_told);
+    static app::LoopbackRun loopback;
+    ASSERT_EQ(loopback.start(wire, app::default_sweep_settings()), Status::kOk);
+    for (int block = 0; block < 10'000 && !loopback.done(); ++block) {
+      loopback.step(wire);
+    }
+    EXPECT_TRUE(loopback.done());
+    EXPECT_EQ(loopback.status(), Status::kLostBlock);
+    EXPECT_EQ(loopback.results().lost_blocks, is_told ? 9U : 27U) << "once, and eight times anew";
+    EXPECT_FALSE(wire.running());
+  }
 }
 
 // Without the wire, only a hundredth of the drive limit goes out.
@@ -161,6 +221,16 @@ TEST_F(InstrumentLoopback, AnswersItsNumbersAndKeepsThePoints) {
   EXPECT_EQ(found[10], 0.0);
   EXPECT_EQ(i.ask("CORR:RAT?"), "1,0") << "nothing is kept";
   EXPECT_EQ(i.ask("FETC:FRES?"), points);
+  EXPECT_EQ(i.errors(), "");
+}
+
+TEST_F(InstrumentLoopback, AnswersHowManyBlocksWereLost) {
+  sim::BenchSettings settings;
+  settings.fault = {sim::FaultKind::kLostBlock, 60'000};
+  InstrumentBench i(settings);
+  const std::vector<double> found = i.numbers("DIAG:LOOP?");
+  ASSERT_EQ(found.size(), 11U);
+  EXPECT_EQ(found[10], 1.0);
   EXPECT_EQ(i.errors(), "");
 }
 

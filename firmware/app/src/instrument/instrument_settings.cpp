@@ -382,7 +382,7 @@ void InstrumentCommands::loopback(Instrument& i, Call& call) noexcept {
         found.distortion_percent}) {
     call.answer().number(number);
   }
-  call.answer().integer(0);  // A frame that is lost is an error, and there is no answer.
+  call.answer().integer(found.lost_blocks);
 }
 
 void InstrumentCommands::acquire_corrections(Instrument& i, Call& call) noexcept {

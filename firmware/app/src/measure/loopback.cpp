@@ -19,6 +19,7 @@ constexpr std::uint32_t kSettlingFrames = 2048;
 // A wire has a gain of 1 but for what front ends are off by.
 constexpr double kLeastGain = 0.75;
 constexpr double kGreatestGain = 1.0 / kLeastGain;
+constexpr std::uint32_t kMostRestarts = 8;
 constexpr double kMostFramesOff = 16.0;  // Of the latency.
 constexpr double kStudent = 2.87;        // 95.45 %, four degrees of freedom.
 constexpr double kPercent = 100.0;
@@ -35,26 +36,49 @@ bool is_near_one(double gain) noexcept { return gain > kLeastGain && gain < kGre
 }  // namespace
 
 Status LoopbackRun::start(hal::AnalogStream& stream, const SweepSettings& settings) noexcept {
-  const Status status = stream.start(drive_limits(settings, stream.format()));
-  if (status != Status::kOk) {
-    return status;
-  }
   scales_ = full_scales(settings, stream.format());
   format_ = stream.format();
   format_.drive_full_scale_v = scales_.drive_v;
-  drive_.configure(format_, settings.drive_limit_v, settings.slew_v_per_s);
+  drive_limit_v_ = settings.drive_limit_v;
+  slew_v_per_s_ = settings.slew_v_per_s;
+  restarts_ = 0;
+  results_.lost_blocks = 0;
+  return begin(stream, drive_limits(settings, stream.format()));
+}
+
+Status LoopbackRun::begin(hal::AnalogStream& stream, const hal::DriveLimits& limits) noexcept {
+  const Status status = stream.start(limits);
+  if (status != Status::kOk) {
+    return status;
+  }
+  drive_.configure(format_, drive_limit_v_, slew_v_per_s_);
   silence_.start(format_, scales_);
-  amplitude_v_ = std::min(settings.drive_limit_v, std::min(scales_.reference_v, scales_.device_v));
+  amplitude_v_ = std::min(drive_limit_v_, std::min(scales_.reference_v, scales_.device_v));
   frequency_hz_ = format_.sample_rate_hz / kLongestPeriod;
   ratios_ = 0.0;
   ratios2_ = 0.0;
   phases2_ = 0.0;
   phases_by_frequency_ = 0.0;
+  frames_ = 0;
   left_ = silence_.frames();
   target_ = 0;
   stage_ = Stage::kSilence;
   status_ = Status::kOk;
   return Status::kOk;
+}
+
+// The stream has stopped, with the drive at zero. Where it knows of a loss and not of how much, it
+// tells the frame that was expected.
+void LoopbackRun::count_lost(hal::AnalogStream& stream, std::uint64_t first_frame) noexcept {
+  const std::uint64_t gap = first_frame > frames_ ? first_frame - frames_ : 1;
+  results_.lost_blocks +=
+      static_cast<std::uint32_t>((gap + format_.block_frames - 1) / format_.block_frames);
+  ++restarts_;
+  const Status status =
+      restarts_ > kMostRestarts ? Status::kLostBlock : begin(stream, stream.limits());
+  if (status != Status::kOk) {
+    end(status);
+  }
 }
 
 void LoopbackRun::step(hal::AnalogStream& stream) noexcept {
@@ -66,10 +90,15 @@ void LoopbackRun::step(hal::AnalogStream& stream) noexcept {
   const Span<hal::Frame> response = Span<hal::Frame>(response_).first(count);
   drive_.fill(words);
   const hal::Exchange exchange = stream.exchange(words, response);
+  if (exchange.status == Status::kLostBlock) {
+    count_lost(stream, exchange.first_frame);
+    return;
+  }
   if (exchange.status != Status::kOk) {
     end(exchange.status);
     return;
   }
+  frames_ += count;
   for (std::size_t i = 0; i < count; ++i) {
     sent_[i] = {words[i], words[i]};
   }

@@ -30,6 +30,7 @@ struct LoopbackResults {
   double reference_noise_v = 0.0;  ///< Standard deviation of a sample.
   double device_noise_v = 0.0;
   double distortion_percent = 0.0;  ///< What the sine leaves over beyond noise, of the amplitude.
+  std::uint32_t lost_blocks = 0;    ///< On the way; the rest is of a run without.
 };
 
 /// Measures both channels without drive, looks with a hundredth of the drive limit whether there is
@@ -38,7 +39,8 @@ struct LoopbackResults {
 ///
 /// The ratio's uncertainty is 2.87 times the standard deviation of the five (Student's t for four
 /// degrees of freedom, 95.45 %), and so is that of the skew with what the straight line of the
-/// phases leaves over. 7.5 KiB, all zero before use.
+/// phases leaves over. Where a block is lost, it is counted and all begins anew, eight times at
+/// most. 7.5 KiB, all zero before use.
 class LoopbackRun {
  public:
   /// @param[in] settings Checked; of them the limits and full scales.
@@ -50,8 +52,8 @@ class LoopbackRun {
   void stop(hal::AnalogStream& stream) noexcept;
 
   bool done() const noexcept { return stage_ == Stage::kDone; }
-  /// @returns kOk, the fault of the stream, or kNoReference: nothing like the drive comes in at one
-  /// of the inputs.
+  /// @returns kOk, the fault of the stream (kLostBlock if blocks were lost again and again), or
+  /// kNoReference: nothing like the drive comes in at one of the inputs.
   Status status() const noexcept { return status_; }
   double progress() const noexcept;
   /// When `done()`, with kOk.
@@ -62,6 +64,8 @@ class LoopbackRun {
 
   static constexpr std::size_t kFrequencies = 5;
 
+  Status begin(hal::AnalogStream& stream, const hal::DriveLimits& limits) noexcept;
+  void count_lost(hal::AnalogStream& stream, std::uint64_t first_frame) noexcept;
   void take(Span<const hal::Frame> drive, Span<const hal::Frame> response) noexcept;
   void end_stage() noexcept;
   void end_silence() noexcept;
@@ -87,8 +91,12 @@ class LoopbackRun {
   std::array<hal::Word, hal::kMaxBlockFrames> words_ = {};
   std::array<hal::Frame, hal::kMaxBlockFrames> sent_ = {};  // The words in both channels.
   std::array<hal::Frame, hal::kMaxBlockFrames> response_ = {};
+  double drive_limit_v_ = 0.0;
+  double slew_v_per_s_ = 0.0;
   double amplitude_v_ = 0.0;
   double frequency_hz_ = 0.0;
+  std::uint64_t frames_ = 0;  // Since the stream was started.
+  std::uint32_t restarts_ = 0;
   std::uint32_t left_ = 0;    // Frames until this stage ends.
   std::uint32_t target_ = 0;  // 0 is the look for the wire.
   Stage stage_ = Stage::kSilence;
