@@ -625,5 +625,25 @@ TEST(InstrumentWatchdog, ThatHasResetTheBoardIsTold) {
       "in a fault\"\n");
 }
 
+// The reset leads the drive to zero, and the shaker swings on as after an abort.
+TEST(InstrumentWatchdog, SweepAfterItsResetWaitsForRest) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("SOUR:LEV 15;:INIT;*OPC?"), "1");
+  const double noise_v = i.instrument->sequencer().sweep().inputs.silent_reference.noise_v;
+  EXPECT_EQ(i.ask("INIT"), "");
+  i.poll(850);
+  ASSERT_TRUE(i.instrument->is_sweeping());
+  EXPECT_GT(std::abs(i.instrument->sequencer().sweep().check_before.re), 0.0) << "it is driven";
+  (void)i.bench.stop();
+  ManualWatchdog after_reset(100'000, true);
+  i.other_watchdog = &after_reset;
+  i.switch_on();
+  EXPECT_EQ(i.errors().substr(0, 4), "-310");
+  EXPECT_EQ(i.ask("SOUR:LEV 15;:INIT;*OPC?"), "1");
+  EXPECT_EQ(i.errors(), "");
+  EXPECT_NEAR(i.instrument->sequencer().sweep().inputs.silent_reference.noise_v, noise_v,
+              0.1 * noise_v);
+}
+
 }  // namespace
 }  // namespace emax

@@ -26,6 +26,7 @@ void Instrument::start() noexcept {
   }
   if (ports_.watchdog->caused_reset()) {
     session_.status().report(kWatchdogReset.code, kWatchdogReset.words);
+    sequencer_.expect_swinging();
   }
   (void)ports_.watchdog->start();
   if (ports_.watchdog->failed()) {

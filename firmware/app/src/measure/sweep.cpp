@@ -61,7 +61,6 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  const bool may_swing = results_.status != Status::kOk && results_.blocks > 0;
   results_.settings = settings;
   reset();
   work_.begin(stream_.format(), full_scales(settings, stream_.format()));
@@ -69,7 +68,7 @@ Status Sweep::start(const SweepSettings& settings) noexcept {
   work_.drive_.configure(work_.format_, settings.drive_limit_v, settings.slew_v_per_s);
   work_.silence_.start(work_.format_, work_.scales_);
   work_.left_ = work_.silence_.frames();
-  if (may_swing) {
+  if (results_.may_swing) {
     work_.activity_ = SweepWorkspace::Activity::kRest;
     work_.left_ = frames_of(kRest_s * work_.format_.sample_rate_hz);
   }
@@ -99,6 +98,7 @@ void Sweep::stop() noexcept {
 
 void Sweep::fail(Status status) noexcept {
   (void)stream_.stop();
+  results_.may_swing = results_.may_swing || results_.blocks > 0;
   results_.status = status;
   results_.failed_frequency_hz =
       results_.stage == SweepStage::kSilence ? 0.0 : work_.target_.frequency_hz;
@@ -223,6 +223,7 @@ void Sweep::consume(std::size_t from, std::size_t count) noexcept {
 void Sweep::end_activity() noexcept {
   switch (work_.activity_) {
     case SweepWorkspace::Activity::kRest:
+      results_.may_swing = false;
       work_.activity_ = SweepWorkspace::Activity::kSilence;
       work_.left_ = work_.silence_.frames();
       return;

@@ -53,13 +53,15 @@ struct SweepResults {
   std::uint64_t blocks = 0;          ///< Exchanged so far.
   std::size_t point_count = 0;
   SweepStage stage = SweepStage::kIdle;
+  bool may_swing = false;  ///< The shaker, after a fault: the next sweep waits for rest first.
   /// kOk while the sweep runs and after a good end; else why it failed:
   /// * kLostBlock, kLateBlock, kHardwareFault, kNotRunning: The stream.
   /// * kSaturated: A channel at full scale at a sixteenth of the level, or without drive, or a
-  ///   ratio that is far off after the drive was lowered.
+  ///   ratio that is far off after the drive was lowered; or full scale leaves so little level that
+  ///   the drive has few steps.
   /// * kStuckChannel: The same word for a whole period of the drive.
   /// * kNoReference, kNoDevice: One channel at the level of noise while the other has a signal.
-  /// * kWeakSignal: Both, at the largest permitted drive.
+  /// * kWeakSignal: Both, at the largest permitted drive; or a drive of few steps for the level.
   /// * kLevelNotReached: The level needs more drive than amplitude and slope permit.
   /// * kSwappedChannels: A ratio as of exchanged channels, or far from the expected one.
   /// * kInvertedPolarity: A phase half a turn off.

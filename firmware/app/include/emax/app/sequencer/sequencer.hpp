@@ -113,6 +113,9 @@ class Sequencer {
   /// @param[in] stream Nobody else uses it until the sweep has ended.
   Refusal measure(hal::AnalogStream& stream, const SweepSettings& settings) noexcept;
 
+  /// Makes the next sweep wait for rest first: the shaker may swing for what happened before.
+  void expect_swinging() noexcept { sweep_.may_swing = true; }
+
   /// A sweep, and with its points an evaluation.
   Refusal measure_and_evaluate(hal::AnalogStream& stream, const SweepSettings& sweep,
                                const Settings& settings, Goal goal) noexcept;
