@@ -62,7 +62,7 @@ const char* explain(Status status) noexcept {
              "again.";
     case Status::kWeakSignal:
       return "The signal is buried in noise at the level and drive permitted; raise the level, or "
-             "check amplifier, gains and mounting.";
+             "check amplifier, both cables, gains and mounting.";
     case Status::kLevelNotReached:
       return "The wanted acceleration needs more drive than is permitted; lower the level or raise "
              "the drive limit.";

@@ -171,10 +171,13 @@ Problem BenchJob::describe_sweep() const {
   const std::string where = sweep.failed_frequency_hz > 0.0
                                 ? "at " + in_hz(sweep.failed_frequency_hz)
                                 : "before the first frequency";
+  const std::string hint = sweep.status == Status::kSaturated
+                               ? "; --device-gain and --reference-gain below 1 are attenuators"
+                               : "";
   return fault(std::string(app::name_of_fault(sweep.status)) + " " + where + ": " +
-               in_line(explain(sweep.status)) + " (" + std::to_string(sweep.points().size()) +
-               " of " + std::to_string(sweep.settings.frequency_count) + " points kept, " + drive +
-               ")");
+               in_line(explain(sweep.status)) + hint + " (" +
+               std::to_string(sweep.points().size()) + " of " +
+               std::to_string(sweep.settings.frequency_count) + " points kept, " + drive + ")");
 }
 
 }  // namespace emax::desk

@@ -547,6 +547,53 @@ TEST(Sweep, UnreachableLevel) {
   slow.expect_limits_kept(settings);
 }
 
+// 10 V are 0.1 m/s^2 for it, and at its resonance 0.06: a drive of 27 mV, where a step of 12 bits
+// over 10 V is 4.9 mV. What helps is an attenuator, or a drive whose full scale is that of the
+// task.
+TEST(Sweep, SensorThatIsTooSensitiveForTheStepsOfTheDrive) {
+  BenchSettings bench;
+  bench.device.sensitivity = 100.0;
+  SweepSettings settings = default_sweep_settings();
+  settings.expected_sensitivity = 100.0;
+  SweepRun run(bench);
+  run.to_end(settings);
+  EXPECT_EQ(run.sweep.status, Status::kSaturated) << emax::explain(run.sweep.status);
+  // Where the level was asked for, "lower the level" would be the wrong way.
+  settings.level_mps2 = 0.05;
+  SweepRun low(bench);
+  low.to_end(settings);
+  EXPECT_EQ(low.sweep.status, Status::kWeakSignal) << emax::explain(low.sweep.status);
+
+  settings = default_sweep_settings();
+  settings.expected_sensitivity = 100.0;
+  settings.device_gain = 0.1;
+  bench.device_gain = 0.1;
+  SweepRun attenuated(bench);
+  attenuated.to_end(settings);
+  EXPECT_EQ(attenuated.sweep.status, Status::kOk) << emax::explain(attenuated.sweep.status);
+
+  bench.device_gain = 1.0;
+  bench.front_end.drive_v = 1.0;
+  settings.device_gain = 1.0;
+  settings.drive_full_scale_v = 1.0;
+  settings.drive_limit_v = 1.0;
+  SweepRun fine(bench);
+  fine.to_end(settings);
+  EXPECT_EQ(fine.sweep.status, Status::kOk) << emax::explain(fine.sweep.status);
+  for (const SweepRun* good : {&attenuated, &fine}) {
+    const auto& truth = good->bench.truth();
+    for (const SweepPoint& point : good->sweep.points()) {
+      const std::complex<double> k =
+          response_of(truth.device, truth.apparent_sensitivity, point.point.frequency_hz);
+      const std::complex<double> found = std::polar(point.point.amplitude, point.point.phase_rad);
+      // Six standard uncertainties of the point, and what the drift of the bench adds.
+      EXPECT_LE(std::abs(found / k - 1.0),
+                6.0 * point.point.u_amplitude / point.point.amplitude + 2e-4)
+          << point.point.frequency_hz;
+    }
+  }
+}
+
 TEST(Sweep, DeadShaker) {
   BenchSettings bench;
   bench.shaker.gain = 1e-7;

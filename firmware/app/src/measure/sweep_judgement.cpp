@@ -18,6 +18,7 @@ constexpr std::uint32_t kMaxTries = 12;
 constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
 constexpr double kDistortedShare = 0.1;  // An error above,
 constexpr double kFlaggedShare = 0.03;   // flagged above.
+constexpr double kFewSteps = 0.0025;     // Of full scale: five steps of 12 bits, 8 %.
 constexpr std::uint64_t kStuckWords = 128;
 constexpr double kOffsetShare = 0.02;  // Of full scale, against the silence.
 constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
@@ -70,6 +71,7 @@ struct Sweep::Reading {
   SineFitResult fit;
   double weak_v = 0.0;   // Below this it may be noise.
   double doubt_v = 0.0;  // What noise and hum make of its mean.
+  double distortion = 0.0;
   bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
   bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
   // The phase is good to 0.15 degrees.
@@ -97,6 +99,8 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
       kWeakSigmas * silent.noise_v * sqrt(2.0 / samples) +
       3.0 * silent.hum_in_fit_v(work_.target_.frequency_hz, samples / work_.format_.sample_rate_hz);
   reading.doubt_v = reading.weak_v + 2.0 * sqrt(hum2);
+  reading.distortion =
+      distortion_of(reading.fit.residual_std_v, silent.noise_v, reading.fit.amplitude_v, samples);
   return reading;
 }
 
@@ -151,6 +155,11 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   if (!(work_.drive_per_acceleration_ > 0.0)) {
     work_.level_room_mps2_ = room_mps2(reference.fit.amplitude_v, device.fit.amplitude_v);
   }
+  const Status status = status_at_first(reference, device);
+  if (status != Status::kOk) {
+    suspect(status);
+    return;
+  }
   const double aim = aim_mps2();
   const double most_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
   const bool is_low = acceleration < aim * (1.0 - kLevelTolerance);
@@ -179,13 +188,51 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   drive_to(needed_v < most_v ? needed_v : most_v);
 }
 
+// Before the level follows a reference that may be another sensor by now, upwards or downwards.
+Status Sweep::status_at_first(const Reading& reference, const Reading& device) noexcept {
+  if (!reference.is_clear() || !device.is_clear()) {
+    return Status::kOk;
+  }
+  const bool is_lost = has_lost_gain(reference, device);
+  // At the first look a device that is saturated at the level would look like another fault.
+  const bool is_judged =
+      results_.stage != SweepStage::kCheckBefore && device.distortion <= kFlaggedShare;
+  const Status cables = is_judged
+                            ? plausibility_of(ratio_of(reference.fit.phasor(), device.fit.phasor()))
+                            : Status::kOk;
+  if (cables != Status::kOk || !is_lost) {
+    return cables;
+  }
+  return reference.distortion > kFlaggedShare ? Status::kDistorted : Status::kNoReference;
+}
+
+// From one look to the next at the same frequency the reference reads less per drive, and the
+// device does not: the shaker is the same, and to keep the level would need more than the level.
+bool Sweep::has_lost_gain(const Reading& reference, const Reading& device) noexcept {
+  if (work_.target_.was_overrange) {
+    return false;
+  }
+  const double reference_v_per_v = reference.fit.amplitude_v / work_.drive_.amplitude_v();
+  const double by_device = reference.fit.amplitude_v / device.fit.amplitude_v;
+  SweepWorkspace::Target& target = work_.target_;
+  constexpr double kLeast = 1.0 - kConfirmedWithin;
+  if (!(target.by_device > 0.0)) {
+    target.reference_v_per_v = reference_v_per_v;
+    target.by_device = by_device;
+  }
+  return reference_v_per_v < kLeast * target.reference_v_per_v &&
+         by_device < kLeast * target.by_device;
+}
+
 bool Sweep::is_level_little() const noexcept {
   return work_.level_room_mps2_ < results_.settings.level_mps2;
 }
 
-// A level that full scale has made little is not reached for the converters' steps.
+// A level that full scale has made little is not reached for the converters' steps, and a channel
+// that was too large for its level may not follow the drive.
 void Sweep::fail_at_level() noexcept {
-  fail(is_level_little() ? Status::kSaturated : Status::kLevelNotReached);
+  fail(is_level_little() || work_.target_.was_overrange ? Status::kSaturated
+                                                        : Status::kLevelNotReached);
 }
 
 // What takes one of the channels to full scale, as far as their gains can be believed: of a
@@ -205,31 +252,15 @@ double Sweep::room_mps2(double reference_v, double device_v) const noexcept {
 // More drive, because the reference reads less than the level. It may read less because it has just
 // died, or because its gain has changed: the limit of acceleration depends on it.
 bool Sweep::may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept {
-  // At the first look a device that is saturated at the level would look like another fault.
-  const bool is_judged = results_.stage != SweepStage::kCheckBefore;
-  const double of_device =
-      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v,
-                    device.fit.amplitude_v, static_cast<double>(work_.target_.repeat_frames));
-  if (is_judged && reference.is_clear() && device.is_clear() && of_device <= kFlaggedShare) {
-    const Status status = plausibility_of(ratio_of(reference.fit.phasor(), device.fit.phasor()));
-    if (status != Status::kOk) {
-      suspect(status);
-      return false;
-    }
-  }
   const double drive_v = work_.drive_.amplitude_v();
-  const double samples = static_cast<double>(work_.target_.repeat_frames);
-  const double distortion =
-      distortion_of(reference.fit.residual_std_v, results_.inputs.silent_reference.noise_v,
-                    reference.fit.amplitude_v, samples);
   const bool is_look = !(work_.drive_per_acceleration_ > 0.0);
   SweepWorkspace::Target& target = work_.target_;
   const bool is_permitted = is_look || needed_v <= target.permitted_v;
-  if (is_permitted && distortion <= kDistortedShare) {
+  if (is_permitted && reference.distortion <= kDistortedShare) {
     target.permitted_v = is_look ? SweepWorkspace::kPermittedStep * needed_v : target.permitted_v;
     return true;
   }
-  if (!is_permitted && work_.device_v_per_v_ > 0.0 &&
+  if (!is_permitted && reference.distortion <= kDistortedShare && work_.device_v_per_v_ > 0.0 &&
       device.fit.amplitude_v > kContradiction * drive_v * work_.device_v_per_v_) {
     // The device sees as much as before.
     suspect(Status::kNoReference);
@@ -303,14 +334,11 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   const double flat_v =
       reference.fit.amplitude_v * magnitude(results_.check_before) / ratio_factor();
   const double device_v = device.fit.amplitude_v > flat_v ? device.fit.amplitude_v : flat_v;
-  const double distortion[] = {
-      distortion_of(reference.fit.residual_std_v, results_.inputs.silent_reference.noise_v,
-                    reference.fit.amplitude_v, samples),
-      distortion_of(device.fit.residual_std_v, results_.inputs.silent_device.noise_v, device_v,
-                    samples)};
+  const double of_device = distortion_of(device.fit.residual_std_v,
+                                         results_.inputs.silent_device.noise_v, device_v, samples);
   // A drive of few steps is no good sine; its point is flagged.
   const double most = is_level_little() ? 2.0 * kDistortedShare : kDistortedShare;
-  if (distortion[0] > most || distortion[1] > most) {
+  if (reference.distortion > most || of_device > most) {
     return Status::kDistorted;
   }
   return Status::kOk;
@@ -324,12 +352,12 @@ void Sweep::suspect(Status status) noexcept {
   const bool may_ring = status == Status::kDistorted && results_.stage != SweepStage::kCheckBefore;
   // A second fault within the second look moves the mean, too.
   const bool is_patient = may_ring || status == Status::kDcDrift;
+  double drive_v = work_.drive_.amplitude_v();
   if (target.looks >= (is_patient ? kMostLooksAgain : 1)) {
-    fail(status);
+    fail(status == Status::kDistorted ? distortion_at(drive_v) : status);
     return;
   }
   ++target.looks;
-  double drive_v = work_.drive_.amplitude_v();
   if (may_ring) {
     target.settle_scale *= kRingingScale;
     // A level that full scale has made little needs its steps.
@@ -339,6 +367,16 @@ void Sweep::suspect(Status status) noexcept {
     }
   }
   drive_to(drive_v);
+}
+
+// A drive of few steps of its converter is no sine: less of it, as for other distortion, would not
+// help.
+Status Sweep::distortion_at(double drive_v) const noexcept {
+  if (is_level_little()) {
+    return Status::kSaturated;
+  }
+  return drive_v < kFewSteps * work_.format_.drive_full_scale_v ? Status::kWeakSignal
+                                                                : Status::kDistorted;
 }
 
 // K over the ratio of the volts.
@@ -396,18 +434,20 @@ void Sweep::end_target() noexcept {
   begin_next();
 }
 
+// The check frequency is far below the resonance, and so is what lies below it.
+bool Sweep::is_neighbour() const noexcept {
+  return work_.target_.frequency_hz < kPlausibleFactor * work_.last_hz_;
+}
+
 // Half a turn between neighbours, both as large as at the check frequency: a resonance between them
 // would have made one of them larger, unless they are far apart.
 bool Sweep::has_turned_round(const Complex& ratio, const Complex& before) const noexcept {
   const double flat = magnitude(results_.check_before);
   const double size = magnitude(ratio);
   const double size_before = magnitude(before);
-  // The check frequency is far below the resonance, and so is what lies below it.
-  const double frequency_hz = work_.target_.frequency_hz;
-  const double before_hz = frequency_hz < work_.last_hz_ ? frequency_hz : work_.last_hz_;
   return ratio.re * before.re + ratio.im * before.im < -kTurnedRound * size * size_before &&
          !is_beyond(size / flat, kFlatWithin) && !is_beyond(size_before / flat, kFlatWithin) &&
-         !is_beyond(frequency_hz / before_hz, kPlausibleFactor);
+         is_neighbour();
 }
 
 // What check and last frequency let expect of a device of second order: of its 1/K the real part is
@@ -437,7 +477,8 @@ Status Sweep::plausibility_of(const Complex& ratio) const noexcept {
         kForeseen * square_of(inverse) + kForeseenFlat / square_of(results_.check_before);
     expected = is_foreseen ? inverse_of(inverse) : work_.last_ratio_;
   }
-  // Exchanged channels turn V_a/V_r, which is ratio/factor, into its inverse.
+  // Exchanged channels turn V_a/V_r, which is ratio/factor, into its inverse; with one of them
+  // turned round, into minus that.
   const Complex swapped = factor * factor * inverse_of(expected);
   const double expected2 = square_of(expected);
   const double jump2 = square_of(ratio) / expected2;
@@ -456,9 +497,10 @@ Status Sweep::plausibility_of(const Complex& ratio) const noexcept {
     is_wrong = phase < -0.5 * kPi;
   } else {
     // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
-    is_wrong =
-        distance2(ratio, swapped) * expected2 < kSwappedShare * to_expected2 * factor * factor ||
-        has_turned_round(ratio, expected);
+    const double near2 = kSwappedShare * to_expected2 * factor * factor;
+    is_wrong = distance2(ratio, swapped) * expected2 < near2 ||
+               (distance2(ratio, -swapped) * expected2 < near2 && is_neighbour()) ||
+               has_turned_round(ratio, expected);
   }
   // Past half a turn of lag the phase begins again at the top.
   const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * expected2;

@@ -35,9 +35,11 @@ class SweepWorkspace;
 ///
 /// The limit of acceleration does not hang on the reference alone. A step to more than 1.5 times
 /// the drive that the frequency before predicts is refused until a second look at half of the drive
-/// agrees with the first, and where the device's channel contradicts it; a reading that is no sine
-/// is no reason for more drive; and while nothing was seen at all, a tenth of the drive limit is
-/// the most.
+/// agrees with the first, and where the device's channel contradicts it: a reference that reads a
+/// tenth less per drive from one look to the next at a frequency, while the device does not, ends
+/// the sweep. The cables are judged before the level follows the reference; a reading that is no
+/// sine is no reason for more drive; and while nothing was seen at all, a tenth of the drive limit
+/// is the most.
 ///
 /// A run is three references: what it has found so far is in the results, what it needs to go on in
 /// the workspace. A new one on the same three goes on where the last one was. Nobody else may write
@@ -94,6 +96,8 @@ class Sweep {
   void end_repeat() noexcept;
   Reading reading_of(const SineFitResult& fit, const SilentChannel& silent) const noexcept;
   void judge_first(const Reading& reference, const Reading& device) noexcept;
+  Status status_at_first(const Reading& reference, const Reading& device) noexcept;
+  bool has_lost_gain(const Reading& reference, const Reading& device) noexcept;
   bool is_level_little() const noexcept;
   void fail_at_level() noexcept;
   double room_mps2(double reference_v, double device_v) const noexcept;
@@ -102,7 +106,9 @@ class Sweep {
   double offset_change_v(double reference_v, double device_v) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
+  Status distortion_at(double drive_v) const noexcept;
   void end_target() noexcept;
+  bool is_neighbour() const noexcept;
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
   Complex inverse_expected() const noexcept;
   Status plausibility_of(const Complex& ratio) const noexcept;

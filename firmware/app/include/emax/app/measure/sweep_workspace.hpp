@@ -41,7 +41,10 @@ class SweepWorkspace {
     double unconfirmed_v = 0.0;  // V/(m/s^2) of the first look that asked for more.
     double periods = 0.0;        // To settle, at least;
     double settle_scale = 1.0;   // the time to settle times this.
-    std::uint32_t looks = 0;     // Again, at what was suspect.
+    // At the first look that was clear: volts per volt of drive, and over the device's.
+    double reference_v_per_v = 0.0;
+    double by_device = 0.0;
+    std::uint32_t looks = 0;  // Again, at what was suspect.
     bool was_overrange = false;
     bool is_close = false;  // The level of this frequency has been seen.
   };
