@@ -587,7 +587,7 @@ class Bench(ProgramTest):
                 self.assertEqual((bench["fault"]["name"], bench["points"]), (name, kept))
                 rows = (self.directory / "out/frequency_response.csv").read_text().splitlines()
                 rows = [row for row in rows if not row.startswith("# shared:")]
-                self.assertEqual((rows[0], len(rows)), (HEADER + ",u_common", 1 + kept))
+                self.assertEqual((rows[0], len(rows)), (HEADER + ",u_common,level_mps2", 1 + kept))
                 self.assertLess(float(rows[-1].split(",")[0]), float(found[1]))
 
     def test_fault_before_the_first_point(self):
@@ -596,7 +596,7 @@ class Bench(ProgramTest):
         self.assert_one_line(result.stderr, "DC drift before the first frequency", "0 of 42 points kept")
         results = json.loads(result.stdout)
         self.assertEqual((results["model"], results["energy"], results["bench"]["points"]), (None, None, 0))
-        self.assertEqual((self.directory / "out/frequency_response.csv").read_text(), HEADER + ",u_common\n")
+        self.assertEqual((self.directory / "out/frequency_response.csv").read_text(), HEADER + ",u_common,level_mps2\n")
 
     def test_fault_keeps_a_complete_report_of_an_earlier_run(self):
         report = self.succeed("report", *QUICK, "--out", "out")

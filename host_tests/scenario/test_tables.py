@@ -328,7 +328,12 @@ class TablesThereAndBack(Tables, ProgramTest):
         """What its points share is in the file: with it the uncertainties are the same, too."""
         first = self.json_of(*QUICK, "--out", "out")
         table = (self.directory / "out/frequency_response.csv").read_text().splitlines()
-        self.assertTrue(table[0].endswith(",u_common"))
+        self.assertTrue(table[0].endswith(",u_common,level_mps2"))
+        # The level is 1 m/s^2, reached within the 5 % at which the sweep goes on; it is also in the budget.
+        levels = [row.split(",")[-1] for row in table[1:-1]]
+        self.assertEqual([float(level) for level in levels],
+                         [float(f"{row[-1]:.6g}") for row in first["bench"]["budget"]])
+        self.assertTrue(all(0.94 <= float(level) <= 1.06 for level in levels))
         self.assertTrue(table[-1].startswith("# shared: skew="))
         second = self.json_of("--points", "out/frequency_response.csv", *QUICK, "--out", "again")
         for name in ["S", "f0", "beta", "uS", "uf0", "ubeta", "chi2"]:

@@ -14,27 +14,36 @@ namespace emax::desk {
 
 namespace {
 
-// The tables; they need nothing but the results.
+constexpr char kPointsTable[] = "frequency_response.csv";
+
+// The other tables; they need nothing but the results.
 struct Table {
   const char* name;
   void (*write)(const app::EvaluationResults& results, app::TextWriter& out) noexcept;
-  bool needs_points;
 };
 
 constexpr Table kTables[] = {
-    {"frequency_response.csv", app::write_frequency_response_csv, true},
-    {"impulse_response.csv", app::write_impulse_response_csv, false},
-    {"signal.csv", app::write_signal_csv, false},
-    {"trend.csv", app::write_trend_csv, false},
-    {"histogram.csv", app::write_histogram_csv, false},
+    {"impulse_response.csv", app::write_impulse_response_csv},
+    {"signal.csv", app::write_signal_csv},
+    {"trend.csv", app::write_trend_csv},
+    {"histogram.csv", app::write_histogram_csv},
 };
+
+Problem add_points_table(const app::EvaluationResults& results, const app::ReportContext& context,
+                         OutputFiles& files) {
+  if (results.source != app::Source::kPoints) {
+    files.set_aside(kPointsTable);  // It may be the only record of a measurement.
+    return {};
+  }
+  const app::SweepResults* sweep =
+      context.measurement != nullptr ? &context.measurement->sweep : nullptr;
+  return files.add(kPointsTable, [&](app::TextWriter& out) {
+    write_frequency_response_csv(results, sweep, out);
+  });
+}
 
 Problem add_tables(const app::EvaluationResults& results, OutputFiles& files) {
   for (const Table& table : kTables) {
-    if (table.needs_points && results.source != app::Source::kPoints) {
-      files.set_aside(table.name);  // It may be the only record of a measurement.
-      continue;
-    }
     Problem problem =
         files.add(table.name, [&](app::TextWriter& out) { table.write(results, out); });
     if (problem) {
@@ -103,7 +112,8 @@ Problem write_files(const app::EvaluationResults& results, const app::ReportCont
   if (problem) {
     return problem;
   }
-  problem = add_tables(results, files);
+  problem = add_points_table(results, context, files);
+  problem = problem ? problem : add_tables(results, files);
   if (problem) {
     return problem;
   }
@@ -135,7 +145,7 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   Problem problem = files.add("report.txt", text);
   problem = problem ? problem : files.add("results.json", json);
   problem = problem ? problem : files.add("report.html", page);
-  problem = problem ? problem : files.add("frequency_response.csv", points);
+  problem = problem ? problem : files.add(kPointsTable, points);
   return problem ? problem : files.commit();
 }
 
@@ -146,12 +156,9 @@ Problem write_sensitivity_files(const app::EvaluationResults& results,
   problem = problem ? problem : files.add("results.json", [&](app::TextWriter& out) {
     write_sensitivity_json(results, context, out);
   });
+  files.set_aside(kPointsTable);  // It may be the only record of a measurement.
   for (const Table& table : kTables) {
-    if (table.needs_points) {
-      files.set_aside(table.name);  // It may be the only record of a measurement.
-    } else {
-      files.drop(table.name);
-    }
+    files.drop(table.name);
   }
   files.drop("report.html");
   drop_pictures(files);

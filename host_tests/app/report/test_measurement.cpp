@@ -248,8 +248,8 @@ TEST(Measurement, TableCanBeReadBack) {
   const SweepResults& sweep = good_run().sweep;
   const EvaluationResults& evaluation = evaluated(sweep);
   const emax::WlspFit fit = evaluation.fit.result();
-  FrequencyResponse points = table_of(
-      text_of([&](TextWriter& out) { emax::app::write_frequency_response_csv(evaluation, out); }));
+  FrequencyResponse points = table_of(text_of(
+      [&](TextWriter& out) { emax::app::write_frequency_response_csv(evaluation, &sweep, out); }));
   ASSERT_EQ(points.size(), 42U);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const emax::ResponsePoint& measured = sweep.points()[i].point;
@@ -308,7 +308,7 @@ TEST(Measurement, FaultKeepsThePointsBeforeIt) {
   const std::string text = text_of(
       [&](TextWriter& out) { emax::app::write_measured_points_csv(measurement_of(run), out); });
   EXPECT_EQ(text.substr(0, text.find('\n')),
-            "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,u_common");
+            "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,u_common,level_mps2");
   const FrequencyResponse points = table_of(text);
   ASSERT_EQ(points.size(), count);
   EXPECT_EQ(points.points()[3].amplitude, run.sweep.points()[3].point.amplitude);
@@ -460,8 +460,8 @@ TEST(Measurement, CommonPartOfAPointsTable) {
   EXPECT_NEAR(json.number("model.common_percent"), 0.5, 1e-15);
   EXPECT_EQ(json.at("bench"), "null");
   // The table comes out as it went in: totals.
-  const FrequencyResponse again = table_of(
-      text_of([&](TextWriter& out) { emax::app::write_frequency_response_csv(evaluation, out); }));
+  const FrequencyResponse again = table_of(text_of(
+      [&](TextWriter& out) { emax::app::write_frequency_response_csv(evaluation, nullptr, out); }));
   const FrequencyResponse before = emax::test::table1();
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(again.points()[i].u_amplitude, before.points()[i].u_amplitude);

@@ -14,7 +14,7 @@ constexpr std::size_t kColumns = 5;
 // The header of frequency_response.csv from the sixth column on, in small letters; each may be
 // missing.
 constexpr const char* kMoreColumns[] = {"model_amplitude", "model_phase_deg", "residual_re",
-                                        "residual_im", "u_common"};
+                                        "residual_im",     "u_common",        "level_mps2"};
 constexpr double kCoverageFactor = 2.0;
 constexpr double kMaxPhase_deg = 360.0;
 

@@ -10,6 +10,7 @@ namespace {
 constexpr double kCoverageFactor = 2.0;
 constexpr int kTableDigits = 15;
 constexpr int kSharedDigits = 12;
+constexpr int kLevelDigits = 6;
 
 void write_row(Span<const double> numbers, TextWriter& out) noexcept {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -45,6 +46,10 @@ void write_point(const ResponsePoint& point, double common_u, TextWriter& out) n
 /// What all points have in common, expanded, in the unit of the amplitude.
 void write_common(const ResponsePoint& point, double common_u, TextWriter& out) noexcept {
   out.text(",").general(kCoverageFactor * common_u * point.amplitude, kTableDigits);
+}
+
+void write_level(const SweepPoint& point, TextWriter& out) noexcept {
+  out.text(",").general(point.acceleration_mps2, kLevelDigits);
 }
 
 /// What points share in other ways than by one factor, for whoever reads the table back.
@@ -92,13 +97,15 @@ void write_signal_row(const EvaluationResults& results, double time_s, double si
 
 }  // namespace
 
-void write_frequency_response_csv(const EvaluationResults& results, TextWriter& out) noexcept {
+void write_frequency_response_csv(const EvaluationResults& results, const SweepResults* sweep,
+                                  TextWriter& out) noexcept {
   const FrequencyResponse& response = results.fit.response();
   const bool has_points = results.source == Source::kPoints;
   const bool has_common = has_points && response.has_common();
   out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,")
       .text("residual_re,residual_im")
-      .text(has_common ? ",u_common\n" : "\n");
+      .text(has_common ? ",u_common" : "")
+      .text(sweep != nullptr ? ",level_mps2\n" : "\n");
   if (!has_points) {
     return;
   }
@@ -114,6 +121,9 @@ void write_frequency_response_csv(const EvaluationResults& results, TextWriter& 
     if (has_common) {
       write_common(point, response.common()[i], out);
     }
+    if (sweep != nullptr) {
+      write_level(sweep->table[i], out);
+    }
     out.line();
   }
   write_shared(response.shared(), out);
@@ -122,12 +132,13 @@ void write_frequency_response_csv(const EvaluationResults& results, TextWriter& 
 void write_measured_points_csv(const Measurement& measurement, TextWriter& out) noexcept {
   const double common_u = measurement.sweep.common.total;
   out.text("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg");
-  out.text(common_u > 0.0 ? ",u_common\n" : "\n");
+  out.text(common_u > 0.0 ? ",u_common" : "").text(",level_mps2\n");
   for (const SweepPoint& point : measurement.sweep.points()) {
     write_point(point.point, common_u, out);
     if (common_u > 0.0) {
       write_common(point.point, common_u, out);
     }
+    write_level(point, out);
     out.line();
   }
   write_shared(measurement.sweep.shared, out);

@@ -89,8 +89,13 @@ void write_failure(const EvaluationResults& results, TextWriter& out) noexcept;
 /// f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg,model_amplitude,model_phase_deg,residual_re,
 /// residual_im: expanded uncertainties (k = 2) as in the table of points, normalised residuals of
 /// 1/K. A part that is common to all points is within u_amplitude: the file can be read as a table
-/// of points, with the common part as the reference's uncertainty.
-void write_frequency_response_csv(const EvaluationResults& results, TextWriter& out) noexcept;
+/// of points, with the common part as the reference's uncertainty, in the column u_common. Points
+/// of a sweep have the peak acceleration that they were measured at in level_mps2, which is for
+/// other readers: a table of points is read without it.
+///
+/// @param[in] sweep Whose points they are; null for others.
+void write_frequency_response_csv(const EvaluationResults& results, const SweepResults* sweep,
+                                  TextWriter& out) noexcept;
 
 /// t_s,k,ka,kf: kResponseRows rows from 0 to T or to the settling time, whichever is later.
 void write_impulse_response_csv(const EvaluationResults& results, TextWriter& out) noexcept;
