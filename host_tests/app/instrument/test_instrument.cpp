@@ -580,6 +580,10 @@ TEST(Instrument, AnswersAllErrorsAtOnce) {
   EXPECT_EQ(i.ask("SYST:ERR:CODE:ALL?"), "0");
   (void)i.ask("NO\nSOUR:LEV 0\n*ESE");
   EXPECT_EQ(i.ask("SYST:ERR:CODE:ALL?"), "-113,-222,-109");
+  EXPECT_EQ(i.ask("SYST:ERR:CODE?"), "0");
+  (void)i.ask("NO\n*ESE");
+  EXPECT_EQ(i.ask("SYST:ERR:CODE?"), "-113");
+  EXPECT_EQ(i.ask("SYST:ERR:CODE:NEXT?"), "-109");
   EXPECT_EQ(i.ask("SYST:ERR:COUN?"), "0");
   (void)i.ask("NO\n*ESE");
   EXPECT_EQ(i.ask("SYST:ERR:ALL?"), "-113,\"Undefined header;NO\",-109,\"Missing parameter;*ESE\"");

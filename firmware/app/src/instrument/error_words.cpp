@@ -26,7 +26,7 @@ constexpr FaultWords kFaults[] = {
     {Status::kNoDevice, "no device: check its cable", scpi::kQuestionableVoltage},
     {Status::kWeakSignal, "weak signal: check amplifier, cables", scpi::kQuestionableVoltage},
     {Status::kLevelNotReached, "level not reached: lower SOUR:LEV", scpi::kQuestionableVoltage},
-    {Status::kSwappedChannels, "swapped channels: check cables, gains",
+    {Status::kSwappedChannels, "swapped channels: check cables, gains, DEV:SENS",
      scpi::kQuestionableCalibration},
     {Status::kInvertedPolarity, "inverted polarity: swap its leads", scpi::kQuestionablePhase},
     {Status::kDistorted, "distorted: lower SOUR:LEV, check mount", scpi::kQuestionableCalibration},

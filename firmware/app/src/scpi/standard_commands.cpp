@@ -91,9 +91,13 @@ void all_errors(Call& call) noexcept {
   next_error(call);
 }
 
+void next_code(Call& call) noexcept {
+  call.answer().integer(static_cast<std::int16_t>(call.status().take_error().code));
+}
+
 void all_codes(Call& call) noexcept {
   do {
-    call.answer().integer(static_cast<std::int16_t>(call.status().take_error().code));
+    next_code(call);
   } while (!call.status().errors().empty());
 }
 

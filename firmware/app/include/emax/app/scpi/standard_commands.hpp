@@ -24,6 +24,7 @@ void status_byte(Call& call) noexcept;     ///< *STB?
 void next_error(Call& call) noexcept;   ///< SYSTem:ERRor[:NEXT]?
 void error_count(Call& call) noexcept;  ///< SYSTem:ERRor:COUNt?
 void all_errors(Call& call) noexcept;   ///< SYSTem:ERRor:ALL?, not immediate.
+void next_code(Call& call) noexcept;    ///< SYSTem:ERRor:CODE[:NEXT]?
 void all_codes(Call& call) noexcept;    ///< SYSTem:ERRor:CODE:ALL?
 void version(Call& call) noexcept;      ///< SYSTem:VERSion?, 1999.0
 
