@@ -49,7 +49,7 @@ inline constexpr scpi::Command<Instrument> kCommon[] = {
     {"SYSTem:ERRor[:NEXT]", kQuery, "", "The oldest error; 0,\"No error\" if none", kPlain, standard<scpi::next_error, I>},
     {"SYSTem:ERRor:COUNt", kQuery, "", "Errors in the queue", kPlain, standard<scpi::error_count, I>},
     {"SYSTem:ERRor:ALL", kQuery, "", "All errors, the oldest first; 0,\"No error\" if none", kPlain, standard<scpi::all_errors, I>},
-    {"SYSTem:ERRor:CODE[:NEXT]", kQuery, "", "The number of the oldest error alone", kPlain, standard<scpi::next_code, I>},
+    {"SYSTem:ERRor:CODE[:NEXT]", kQuery, "", "Number of the oldest error", kPlain, standard<scpi::next_code, I>},
     {"SYSTem:ERRor:CODE:ALL", kQuery, "", "Their numbers; 0 if none", kPlain, standard<scpi::all_codes, I>},
     {"SYSTem:CAPability", kQuery, "", "The subsystems that make up the instrument", kPlain, C::capability},
     {"SYSTem:HELP:HEADers", kQuery, "", "All headers, as a block of lines", kPlain, C::headers},

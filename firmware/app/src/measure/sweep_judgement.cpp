@@ -372,11 +372,10 @@ void Sweep::suspect(Status status) noexcept {
 // A drive of few steps of its converter is no sine: less of it, as for other distortion, would not
 // help.
 Status Sweep::distortion_at(double drive_v) const noexcept {
-  if (is_level_little()) {
-    return Status::kSaturated;
-  }
-  return drive_v < kFewSteps * work_.format_.drive_full_scale_v ? Status::kWeakSignal
-                                                                : Status::kDistorted;
+  const bool has_few_steps = drive_v < kFewSteps * work_.format_.drive_full_scale_v;
+  return is_level_little() ? Status::kSaturated
+         : has_few_steps   ? Status::kWeakSignal
+                           : Status::kDistorted;
 }
 
 // K over the ratio of the volts.
