@@ -409,26 +409,24 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.close();
 }
 
-void write_warning(const char* about, const char* words, JsonWriter& json) noexcept {
+/// @param[in] least_s The T that it asks for; 0 if it asks for none.
+void write_warning(const char* about, const char* words, double least_s,
+                   JsonWriter& json) noexcept {
   json.open(nullptr);
   json.words("about", about);
   json.words("text", words);
+  if (least_s > 0.0) {
+    json.number("least_time_s", least_s);
+  }
   json.close();
 }
 
-void write_warnings(const EvaluationResults& results, const ReportContext& context,
+void write_warnings(const EvaluationResults& results, const ReportContext& context, bool is_valid,
                     JsonWriter& json) noexcept {
   json.open("warnings", '[');
   for (const Warning warning : kWarnings) {
-    if (holds(warning, results, context)) {
-      json.open(nullptr);
-      json.words("about", about(warning));
-      json.words("text", words_of(warning));
-      const double least_s = least_time_s(warning, results);
-      if (least_s > 0.0) {
-        json.number("least_time_s", least_s);
-      }
-      json.close();
+    if (is_valid && holds(warning, results, context)) {
+      write_warning(about(warning), words_of(warning), least_time_s(warning, results), json);
     }
   }
   json.close(']');
@@ -731,6 +729,7 @@ void write_instrument_json(const InstrumentState& state, TextWriter& out) noexce
   write_error_system(state, json);
   write_energies(state, json);
   write_trials(state, json);
+  write_warnings(state.evaluation, context, state.has_energy, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
@@ -752,7 +751,7 @@ void write_json(const EvaluationResults& results, const ReportContext& context,
   write_uncertainty(results, json);
   write_monte_carlo(results, json);
   write_trend(results, json);
-  write_warnings(results, context, json);
+  write_warnings(results, context, true, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
@@ -778,7 +777,7 @@ void write_sensitivity_json(const EvaluationResults& results, const ReportContex
   write_fit(results, context, json);
   write_bench(context.measurement, nullptr, json);
   write_nothing_evaluated(json);
-  write_warnings(results, context, json);
+  write_warnings(results, context, true, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
@@ -793,7 +792,8 @@ void write_measurement_json(const ReportContext& context, const EvaluationResult
   write_bench(context.measurement, refused, json);
   write_nothing_evaluated(json);
   json.open("warnings", '[');
-  write_warning("measurement", "a fault has ended the work, so there is no maximum energy", json);
+  write_warning("measurement", "a fault has ended the work, so there is no maximum energy", 0.0,
+                json);
   json.close(']');
   json.boolean("simulated", is_simulated(context));
   json.close();
