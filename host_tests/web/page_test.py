@@ -81,7 +81,7 @@ class PageTest(ProgramTest):
     def saved(self, button: str) -> str:
         """What a button saves, caught before it becomes a file."""
         self.browser.evaluate(
-            "(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.savedText = blob.text();"
+            "(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.caught = blob; window.savedText = blob.text();"
             f" URL.createObjectURL = make; return '#'; }}; document.getElementById('{button}').click(); }})()"
         )
         return self.browser.evaluate("window.savedText")

@@ -3,6 +3,7 @@
 usage: test_page.py PROGRAM DATA_DIRECTORY EMAX.HTML "RUNNER... IMAGE" [unittest arguments]
 """
 
+import datetime
 import json
 import pathlib
 import re
@@ -10,6 +11,7 @@ import subprocess
 import urllib.parse
 
 from page_test import DATA, PAGE, PROGRAM, PageTest, main
+import results_schema
 
 README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
 MODEL = "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004"
@@ -57,6 +59,15 @@ class Links(PageTest):
         self.wait_for("document.getElementById('run-state').textContent.startsWith('done')")
         self.assert_quiet()
 
+    def test_lead_to_the_whole_page(self):
+        self.run_link("*IDN?\n")
+        self.assertIs(self.browser.evaluate("document.getElementById('job').hidden"), True)
+        self.click("leave-run")
+        self.wait_for("document.body?.dataset.busy === 'no'")
+        self.assertIs(self.browser.evaluate("document.getElementById('job').hidden"), False)
+        self.assertIs(self.browser.evaluate("document.getElementById('run').hidden"), True)
+        self.assertIn("Connected", self.text("connection"))
+
     def test_of_the_readme_run(self):
         links = re.findall(r"emax\.html#run=([^\s`)\"]+)", README.read_text(encoding="utf-8"))
         self.assertGreaterEqual(len(links), 1)
@@ -81,9 +92,15 @@ class Tables(PageTest):
                 self.drop(path)
                 self.assertEqual(self.text("problem"), "")
                 got = self.results()
+                self.assertEqual(results_schema.faults(got), [])
+                self.assertEqual(got["model"]["name"], name)
+                self.assertEqual(got["fit"]["read_as"], expected["fit"]["read_as"])
                 self.assertIn(expected["fit"]["read_as"], self.text("certificate"))
+                printed = self.succeed("report", "--points", path, *options).replace(str(path), name)
+                put_in = printed[printed.index("\nWHAT WAS PUT IN") : printed.index("\nFIT")]
+                self.assertIn(put_in, self.saved("save-report"))
                 self.assertEqual(got["labels"]["device"], path.stem)
-                for part in ["filter", "impulse_response", "energy", "band", "ideal", "uncertainty", "monte_carlo", "trend"]:
+                for part in ["filter", "impulse_response", "energy", "band", "ideal", "uncertainty", "monte_carlo", "trend", "warnings"]:
                     self.assertEqual(got[part], expected[part], part)
                 for parameter in ["S", "f0", "beta", "uS", "uf0", "ubeta", "covariance", "chi2", "dof"]:
                     self.assertEqual(got["model"][parameter], expected["model"][parameter], parameter)
@@ -107,11 +124,68 @@ class Tables(PageTest):
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('#device-list tbody tr').length"), 0)
         # What the table does not say can be said, and said wrongly.
         self.fill("table-uncertainty", "1%,half")
+        self.assertIs(self.browser.evaluate("document.getElementById('table-says').open"), True)
         self.drop(self.directory / "dealer.txt")
         self.assertTrue(self.text("problem").startswith('--uncertainty: "1%,half" given; expected'), self.text("problem"))
         self.fill("table-uncertainty", "1%,0.5deg")
         self.drop(self.directory / "dealer.txt")
         self.assertEqual(self.text("problem"), "")
+        self.assert_quiet()
+
+    def test_that_are_workbooks_are_named_as_such(self):
+        self.open()
+        for name, begin in {"book.xlsx": b"PK\x03\x04", "old.xls": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"}.items():
+            path = self.directory / name
+            path.write_bytes(begin + bytes(range(256)))
+            self.drop(path)
+            self.assertTrue(self.text("problem").startswith(f"{name}: a workbook, not a table as text; in Excel, save it as CSV"))
+        self.click("close-problem")
+        self.assertIs(self.browser.evaluate("document.getElementById('notice').hidden"), True)
+
+    def test_have_their_warnings_and_all_their_figures(self):
+        self.open()
+        # Too short a time and too few trials: a warning on each, and figures that are marked.
+        self.speak("CALC:MCAR:TRI 1000;:CALC:ENER:TIME 0.0005;:CALC:TREN:TIME 0.0005,0.0006")
+        self.drop(DATA / "tables" / "khz.csv")
+        warnings = self.browser.evaluate("[...document.querySelectorAll('#certificate > .warning')].map((p) => p.textContent)")
+        self.assertEqual(
+            [re.sub(r"of [\d.]+ ms", "of T ms", warning) for warning in warnings],
+            [
+                "Warning: T is much shorter than the settling time, so the error has not developed within T. The paper takes T"
+                " from the settling time: give a T of T ms or more.",
+                "Warning: fewer trials than rule (3) asks for; the intervals and the maximum are less certain than their"
+                " digits say.",
+            ],
+        )
+        report = self.saved("save-report")
+        rows = self.browser.evaluate(
+            "[...document.querySelectorAll('#certificate > .wide tbody tr')].map((r) => [...r.cells].map((c) => c.textContent))"
+        )
+        printed = report.split("none exceeds\n")[1].split("\n  Note:")[0].splitlines()
+        self.assertEqual([line.replace("*", " ").split() for line in printed],
+                         [" ".join(row).replace("*", " ").split() for row in rows])
+        self.assertEqual([" *" in row[0] for row in rows], ["*" in line for line in printed])
+
+    def test_stop_as_one_and_wait_for_their_evaluation(self):
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000000")
+        names = ["plain.csv", "khz.csv", "mv_per_g.csv"]
+        self.browser.choose_files("#files", [DATA / "tables" / name for name in names])
+        self.wait_for("/^1 of 3: plain.csv: computing: /.test(document.getElementById('stage').textContent)")
+        self.click("abort")
+        self.idle()
+        problem = self.text("problem")
+        self.assertTrue(problem.startswith("plain: stopped before its figures were known"), problem)
+        self.assertTrue(problem.endswith("not read: khz.csv, mv_per_g.csv"), problem)
+        self.open()
+        self.assertIn("Not evaluated yet", self.text("certificate"))
+        self.speak("CALC:MCAR:TRI 1000")
+        self.browser.evaluate("document.getElementById('again').focus()")
+        self.click("again")
+        self.idle()
+        self.assertEqual(self.text("problem"), "")
+        self.assertEqual(self.browser.evaluate("document.activeElement.id"), "result")
+        self.assertNotIn("Not evaluated yet", self.text("certificate"))
         self.assert_quiet()
 
     def test_give_the_sensitivity_alone_where_they_say_no_more(self):
@@ -141,9 +215,27 @@ class Devices(PageTest):
         page = self.browser.evaluate("document.querySelector('#comparison pre').textContent")
         self.assertEqual(page, self.succeed("compare", *names))
         self.assertEqual(self.saved("save-comparison"), self.succeed("compare", "--csv", *names))
+        self.assertEqual(self.browser.evaluate("caught.arrayBuffer().then((bytes) => [...new Uint8Array(bytes).slice(0, 3)])"),
+                         [0xEF, 0xBB, 0xBF])  # UTF-8, said to Excel; as a text it is not there.
         ranking = self.browser.evaluate("[...document.querySelectorAll('.ranking li')].map((item) => item.textContent)")
         ranked = json.loads(self.succeed("compare", "--json", *names))["devices"]
         self.assertEqual([line.split(": ")[1].split(",")[0] for line in ranking], [device["device"] for device in ranked])
+        for line, device in zip(ranking, ranked):
+            value, expanded = map(float, re.search(r", ([\d.]+) ± ([\d.]+) % of S a", line).groups())
+            digits = len(re.search(r"\.(\d+) ±", line)[1])
+            self.assertAlmostEqual(value, device["value"], delta=0.5001 * 10**-digits)
+            self.assertAlmostEqual(expanded, device["U"], delta=0.05 * device["U"])
+            self.assertEqual("chi-square" in line, device["fit_warns"])
+        self.browser.evaluate("window.print = () => { window.printed = document.body.className; }")
+        self.click("print-comparison")
+        self.assertEqual(self.browser.evaluate("window.printed"), "comparing")
+        self.browser.evaluate("document.body.classList.add('comparing')")
+        paper = self.directory / "comparison.pdf"
+        paper.write_bytes(self.browser.pdf())
+        words = subprocess.run(["pdftotext", "-layout", paper, "-"], capture_output=True, text=True, check=True).stdout
+        for line in ranking:
+            self.assertIn(line.split(",")[0], words)
+        self.assertNotIn("Frequency response", words)
         # Reports are those of the program but for the table's name; they are kept, and gone once deleted.
         self.open()
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('#device-list tbody tr').length"), 3)
@@ -151,6 +243,110 @@ class Devices(PageTest):
         self.open()
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('#device-list tbody tr').length"), 2)
         self.assert_quiet()
+
+    def test_begin_without_the_labels_of_the_one_before(self):
+        # Somewhere it is another day than in Greenwich.
+        utc = datetime.datetime.now(datetime.timezone.utc)
+        zone, hours = ("Pacific/Kiritimati", 14) if utc.hour >= 10 else ("Etc/GMT+12", -12)
+        self.browser.call("Emulation.setTimezoneOverride", timezoneId=zone)
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:SENS:SWE:FREQ 200,1000,2000,4000,5000")
+        first = {"device": "sensor B", "serial": "4711", "operator": "Meier", "date": "2001-02-03", "note": "after the repair"}
+        for label, value in first.items():
+            self.fill(f"label-{label}", value)
+        self.drop(DATA / "tables" / "plain.csv")
+        self.fill("label-device", "sensor B")
+        self.assertEqual(self.results()["labels"], first)
+        self.drop(DATA / "tables" / "plain.csv")
+        self.assertEqual(self.results()["labels"], {**dict.fromkeys(first), "device": "plain", "operator": "Meier"})
+        self.drop(DATA / "tables" / "plain.csv")
+        self.assertEqual(self.results()["labels"]["device"], "plain (2)")
+        self.click("sweep")
+        self.idle()
+        labels = self.results()["labels"]
+        day = (datetime.datetime.now(datetime.timezone.utc) + datetime.timedelta(hours=hours)).date().isoformat()
+        self.assertEqual({**labels, "device": None}, {**dict.fromkeys(first), "operator": "Meier", "date": day})
+        self.assertIn(f"Sweep of {day}", labels["device"])
+
+    def test_come_back_from_their_results(self):
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000")
+        self.drop(DATA / "devices" / "piezo_a.csv")
+        path = self.directory / "results.json"
+        path.write_text(self.saved("save-json"), encoding="utf-8")
+        cells = "[...document.querySelectorAll('#device-list tbody tr')].map((row) => row.cells[{}].textContent)"
+        before = self.browser.evaluate(cells.format(3))
+        self.assertRegex(before[0], r"^[\d.]+ ± [\d.]+$")
+        self.drop(path)
+        self.assertEqual(self.text("problem"), "")
+        self.assertEqual(self.browser.evaluate(cells.format(3)), before * 2)
+        self.assertEqual(self.browser.evaluate(cells.format(1)), ["piezo_a", "piezo_a (2)"])
+        self.assertIn(before[0], self.text("certificate"))
+        self.assertEqual(self.saved("save-json"), path.read_text(encoding="utf-8"))
+        # A name that is none, and a file that only looks like one.
+        results = json.loads(path.read_text(encoding="utf-8"))
+        path.write_text(json.dumps({**results, "labels": {"device": {"a": 1}, "serial": [2]}}), encoding="utf-8")
+        self.drop(path)
+        self.assertEqual(self.text("problem"), "")
+        self.assertEqual(self.browser.evaluate(cells.format(1))[2], "results")
+        path.write_text(json.dumps({"version": results["version"], "model": results["model"]}), encoding="utf-8")
+        self.drop(path)
+        self.assertTrue(self.text("problem").startswith("results.json: holds no maximum energy"), self.text("problem"))
+        path.write_text(json.dumps({**results, "trend": {"points": [1, 2]}}), encoding="utf-8")
+        self.drop(path)
+        self.assertTrue(self.text("problem").startswith("results.json: not as emax writes it"), self.text("problem"))
+        self.assertEqual(len(self.browser.evaluate(cells.format(1))), 3)
+        self.assert_quiet()
+
+    def test_are_gone_once_deleted(self):
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:CALC:FILT:ORD 9")
+        self.drop(*(DATA / "devices" / name for name in ["piezo_a.csv", "piezo_b.csv"]))
+        self.submit("compare")
+        self.wait_for("!document.getElementById('comparison').hidden")
+        self.idle()
+        boxes = "[...document.querySelectorAll('#device-list input')].map((box) => box.checked)"
+        self.browser.evaluate("document.querySelector('#device-list input').click()")
+        self.open()
+        self.assertEqual(self.browser.evaluate(boxes), [False, True])
+        self.browser.evaluate("document.querySelector('#device-list input').click()")
+        self.submit("compare")
+        self.wait_for("!document.getElementById('comparison').hidden")
+        self.idle()
+        self.browser.evaluate("window.confirm = () => true")
+        # Not while it is computed.
+        self.speak("CALC:MCAR:TRI 1000000")
+        self.click("again")
+        self.wait_for("document.getElementById('stage').textContent.startsWith('computing')")
+        self.browser.evaluate("document.querySelectorAll('#device-list .delete')[1].click()")
+        self.assertIn("something is running", self.text("problem"))
+        self.click("abort")
+        self.idle()
+        self.assertEqual(len(self.browser.evaluate(boxes)), 2)
+        self.browser.evaluate("document.querySelectorAll('#device-list .delete')[1].click()")
+        state = ("[document.getElementById('comparison').hidden, document.getElementById('result').hidden, document.title,"
+                 " document.getElementById('label-device').value, document.activeElement.id]")
+        self.assertEqual(self.browser.evaluate(state), [True, True, "emax", "", "device-list"])
+        self.assertEqual(len(self.browser.evaluate(boxes)), 1)
+        self.click("delete-all")
+        self.wait_for("document.body?.dataset.busy === 'no' && document.querySelectorAll('#device-list input').length === 0")
+        self.idle()
+        self.assertEqual(self.speak("CALC:FILT:ORD?"), ["10"])
+        self.assertEqual(self.browser.evaluate("Object.keys(localStorage).filter((k) => k.includes('device.'))"), [])
+
+    def test_by_their_parameters_need_numbers_with_points(self):
+        self.open()
+        for field, value in {"model-s": "1,037", "model-f0": "4073", "model-beta": "0.3"}.items():
+            self.fill(field, value)
+        self.submit("model")
+        self.idle()
+        self.assertTrue(self.text("problem").startswith('S: "1,037" has a comma; write a point'), self.text("problem"))
+        self.fill("model-s", "1.037")
+        self.fill("model-us", "0.003")
+        self.submit("model")
+        self.idle()
+        self.assertTrue(self.text("problem").startswith('u(f0): "" is no number'), self.text("problem"))
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('#device-list tbody tr').length"), 0)
 
     def test_with_hostile_names_stay_text(self):
         self.open()
@@ -196,7 +392,12 @@ class Bench(PageTest):
         printed = self.succeed("report", "--trials", "1000", "--trend", "none", *labels)
         self.assertEqual(front, printed.split("\nTHE FIGURES")[0])
         text = self.saved("save-json")
-        self.assertIn(re.sub(r'  "labels": \{[^}]*\},\n', "", text), expected)
+        self.assertEqual(results_schema.faults_of_text(text), [])
+        # The points and the sweep are the front end's.
+        whole = json.loads(expected[expected.rindex('{\n  "version"') :].rstrip())
+        self.assertEqual(set(whole) - set(json.loads(text)), {"points", "sweep"})
+        rest = re.sub(r'\n  "points": .*?\n(?=  "model")', "\n", expected, flags=re.DOTALL)
+        self.assertIn(re.sub(r'  "labels": \{[^}]*\},\n', "", text), rest)
         self.assertIn("Simulation", self.text("certificate"))
         self.assertTrue(self.browser.evaluate("document.title").startswith("Simulation - "))
         # Evaluated again from what the browser kept, it stays simulated, and the same.
@@ -248,7 +449,12 @@ class Bench(PageTest):
         fields = self.browser.evaluate(
             "[...document.querySelectorAll('#settings-list [data-header]')].map((f) => `:${f.dataset.header} ${f.value}`)"
         )
-        self.assertEqual(sorted(fields), sorted(learnt))
+
+        def numbers(line):
+            return [float(part) if re.match(r"-?[\d.]+", part) else part for part in re.split("[ ,]", line)]
+
+        self.assertEqual(sorted(map(numbers, fields)), sorted(map(numbers, learnt)))
+        self.assertEqual([field for field in fields if re.search(r"\dE", field)], [])
         order = "document.querySelector('[data-header=\"CALC:FILT:ORD\"]')"
         change = "(() => {{ const f = {}; f.value = '{}'; f.dispatchEvent(new Event('change')); }})()"
         self.browser.evaluate(change.format(order, "99"))
@@ -260,6 +466,22 @@ class Bench(PageTest):
         self.open()
         self.assertEqual(self.browser.evaluate(f"{order}.value"), "4")
         self.assertEqual(self.speak("CALC:FILT:ORD?"), ["4"])
+        # What is mounted is another thing than what is asked about it.
+        self.speak("SENS:DEV:SENS 5;:SENS:SWE:REP 4")
+        adaptive = "document.querySelector('[data-header=\"CALC:MCAR:ADAP\"]')"
+        self.assertEqual(self.browser.evaluate(f"[{adaptive}.type, {adaptive}.checked]"), ["checkbox", False])
+        self.browser.evaluate(f"{adaptive}.click()")
+        self.assertEqual(self.speak("CALC:MCAR:ADAP?"), ["1"])
+        self.fill("sim-s", "2.5")
+        self.submit("simulated")
+        self.idle()
+        self.assertEqual(self.text("problem"), "")
+        self.assertEqual(self.speak("CALC:FILT:ORD?;:SENS:SWE:REP?;:CALC:MCAR:ADAP?"), ["4;4;1"])
+        self.assertNotEqual(self.speak("SENS:DEV:SENS?"), ["5"])
+        self.fill("sim-f0", "4073,5")
+        self.submit("simulated")
+        self.idle()
+        self.assertTrue(self.text("problem").startswith('f0: "4073,5" has a comma'), self.text("problem"))
         self.click("defaults")
         self.idle()
         self.assertEqual(self.browser.evaluate(f"{order}.value"), "10")
@@ -271,6 +493,10 @@ class Readers(PageTest):
 
     def test_find_a_name_at_every_control(self):
         self.open(390)
+        names = [node["name"]["value"] for node in self.browser.call("Accessibility.getFullAXTree")["nodes"]
+                 if node.get("role", {}).get("value") == "heading"]
+        numbered = [name for name in names if re.match(r"\d\. ", name)]
+        self.assertEqual([int(name[0]) for name in numbered], list(range(1, 6)), names)
         self.speak("CALC:MCAR:TRI 1000")
         self.drop(DATA / "tables" / "plain.csv")
         self.browser.evaluate("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
@@ -281,6 +507,9 @@ class Readers(PageTest):
         self.assertGreater(len(nodes), 60)
         self.assertEqual([node for node in nodes if not node.get("name", {}).get("value", "").strip()], [])
         self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), 390)
+        edges = ("[...document.querySelectorAll('#device-list button, #certificate .numbers th')]"
+                 ".filter((part) => !part.closest('.numbers-of-plot')).map((part) => part.getBoundingClientRect().right)")
+        self.assertLessEqual(max(self.browser.evaluate(edges)), 390)
         self.assert_quiet()
 
     def test_read_values_with_the_arrow_keys(self):
@@ -295,6 +524,43 @@ class Readers(PageTest):
         values = self.browser.evaluate("document.querySelector('.values').textContent")
         begin = f"frequency {frequency:.5g} Hz · measured {amplitude:.5g} V/(m/s²) · fitted "
         self.assertTrue(values.startswith(begin), values)
+
+    def test_see_ticks_apart_from_each_other_and_from_the_axis(self):
+        self.open(390)
+        # Energies of some 1e-9 V^2 s, and a response that hardly changes.
+        self.speak("CALC:MCAR:TRI 1000;:SENS:SWE:FREQ 30,60,90,120,150")
+        for field, value in {"model-s": "0.001", "model-f0": "4073", "model-beta": "0.3"}.items():
+            self.fill(field, value)
+        self.submit("model")
+        self.idle()
+        self.drop(DATA / "tables" / "plain.csv")
+        for row in range(2):
+            self.browser.evaluate(f"document.querySelectorAll('#device-list .show')[{row}].click()")
+            self.idle()
+            pictures = self.browser.evaluate(
+                "[...document.querySelectorAll('#certificate svg')].map((svg) => [...svg.querySelectorAll('text')].map((text) => {"
+                " const box = text.getBoundingClientRect(), frame = svg.getBoundingClientRect();"
+                " return {words: text.textContent, anchor: text.getAttribute('text-anchor'), name: text.matches('.axis-name'),"
+                " title: text.matches('.panel-title'),"
+                " left: box.left - frame.left, right: box.right - frame.left, upright: box.height > box.width}; }))"
+            )
+            self.assertGreater(len(pictures), 1)
+            for texts in pictures:
+                axis = max(text["right"] for text in texts if text["name"] and text["upright"])
+                for text in texts:
+                    if text["anchor"] == "end" and not text["title"]:
+                        self.assertGreaterEqual(text["left"], axis - 1.0, text)
+                        self.assertLessEqual(len(text["words"]), 7, text)
+        # The first points of a sweep hardly differ: their ticks still do.
+        self.click("sweep")
+        self.idle()
+        ticks = self.browser.evaluate(
+            "(() => { const texts = [...document.querySelector('#certificate svg').querySelectorAll('[text-anchor=end]')];"
+            " return texts.slice(0, texts.findIndex((text, i) => i > 0 && text.y.baseVal[0].value > texts[i - 1].y.baseVal[0].value))"
+            ".map((text) => text.textContent); })()"
+        )
+        self.assertGreaterEqual(len(ticks), 3)
+        self.assertEqual(len(set(ticks)), len(ticks), ticks)
 
     def test_print_a_certificate(self):
         self.open()

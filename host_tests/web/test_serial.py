@@ -145,8 +145,10 @@ class SerialBoard(SerialTest):
         expected = subprocess.run([PROGRAM, "scpi"], input=f"{script}\n", capture_output=True, text=True, check=True).stdout
         expected = json.loads(expected[expected.index("{") :])
         got = self.results()
-        for part in ["points", "model", "energy", "band", "uncertainty", "monte_carlo", "trend"]:
+        for part in ["model", "energy", "band", "uncertainty", "monte_carlo", "trend"]:
             self.assertEqual(got[part], expected[part], part)
+        rows = [[float(cell) for cell in row.split(",")] for row in self.saved("save-csv").splitlines()[1:]]
+        self.assertEqual(rows, [list(point.values()) for point in expected["points"]])
         self.assert_quiet()
 
 

@@ -5,7 +5,34 @@ const element = (id) => document.getElementById(id);
 const STAGES = {sweep: 'sweeping', idle: 'done'};
 const MOST_TABLE_BYTES = 1 << 20;
 const MOST_LOG = 20000;
-const NOTHING = {labels: {device: '', serial: '', operator: '', date: '', note: ''}};
+const LONG_MS = 10000;
+
+const MARKS = {fit: 'its chi-square is too large for its uncertainties', damping: 'its points leave the damping open'};
+const MOUNTED = [['sim-s', 'S'], ['sim-f0', 'f0'], ['sim-beta', 'β']];
+const PARAMETERS = [['model-s', 'S'], ['model-f0', 'f0'], ['model-beta', 'β']];
+const UNCERTAINTIES = [['model-us', 'u(S)'], ['model-uf0', 'u(f0)'], ['model-ubeta', 'u(β)']];
+const WORKBOOKS = ['504b0304', 'd0cf11e0'];  // .xlsx and .ods, .xls
+
+// Somebody has pressed Stop.
+class Stopped extends Error {}
+
+function isWorkbook(bytes) {
+  return WORKBOOKS.includes([...bytes.slice(0, 4)].map((byte) => byte.toString(16).padStart(2, '0')).join(''));
+}
+
+// What stands in these fields, each a number; a comma could be either, so it is refused. fields: [id, name].
+function numbersOf(fields) {
+  return fields.map(([id, name]) => {
+    const text = element(id).value.trim();
+    if (text.includes(',')) {
+      throw new Error(`${name}: "${text}" has a comma; write a point before the decimals and nothing between thousands`);
+    }
+    if (text === '' || !Number.isFinite(Number(text))) {
+      throw new Error(`${name}: "${text}" is no number; expected one as 1.037`);
+    }
+    return text;
+  });
+}
 
 class App {
   constructor() {
@@ -14,9 +41,11 @@ class App {
     this.desk = new Desk();
     this.device = null;
     this.isBusy = false;
-    this.chosen = new Set();
+    this.chosen = new Set(this.keep.get('now')?.chosen ?? []);
+    this.batch = '';
     this.listen();
     this.showDevices();
+    this.numberParts();
   }
 
   listen() {
@@ -24,28 +53,30 @@ class App {
       e.preventDefault();
       act(e);
     });
-    on('connect-simulated', 'click', () => this.work(() => this.connectSimulated([0, 0, 0])));
+    on('connect-simulated', 'click', () => this.work(() => this.connectSimulated([0, 0, 0], this.settingsToKeep())));
     on('connect-serial', 'click', () => this.work(() => this.connectSerial()));
     on('simulated', 'submit', () => this.work(() =>
-      this.connectSimulated(['sim-s', 'sim-f0', 'sim-beta'].map((id) => Number(element(id).value)))));
+      this.connectSimulated(numbersOf(MOUNTED).map(Number), this.settingsToKeep())));
     on('defaults', 'click', () => this.work(() => this.restoreDefaults()));
     on('sweep', 'click', () => this.work(() => this.sweep()).then(() => this.toResult()));
     on('model', 'submit', () => this.work(() => this.takeModel()).then(() => this.toResult()));
     on('abort', 'click', () => this.job?.stop());
-    on('again', 'click', () => this.work(() => this.again()));
+    on('again', 'click', () => this.work(() => this.again()).then(() => this.toResult()));
     on('print', 'click', () => this.print());
     on('save-report', 'click', () => saveFile(fileName(this.device, 'report.txt'), 'text/plain', reportWithLabels(this.device)));
     on('save-json', 'click', () =>
       saveFile(fileName(this.device, 'results.json'), 'application/json', jsonWithLabels(this.device)));
     on('save-csv', 'click', () => saveFile(fileName(this.device, 'points.csv'), 'text/csv', pointsCsv(this.device)));
     on('compare', 'submit', () => this.work(() => this.compare()));
-    on('save-comparison', 'click', () => saveFile('comparison.csv', 'text/csv', this.comparisonCsv));
+    on('save-comparison', 'click', () => saveFile('comparison.csv', 'text/csv', BOM + this.comparisonCsv));
+    on('print-comparison', 'click', () => this.printComparison());
+    on('delete-all', 'click', () => this.deleteAll());
+    on('close-problem', 'click', () => {
+      this.complain('');
+      element('job').focus();
+    });
     on('speak', 'submit', () => this.speak());
     on('clear', 'click', () => this.scpi?.clear());
-    on('leave-run', 'click', () => {
-      history.replaceState(null, '', location.pathname + location.search);
-      location.reload();
-    });
     element('files').addEventListener('change', (event) => {
       const files = [...event.target.files];
       event.target.value = '';
@@ -109,17 +140,19 @@ class App {
 
   // Where somebody wants to be after it, eyes and screen reader alike.
   toResult() {
-    if (element('problem').hidden) {
+    if (element('notice').hidden) {
       element('result').focus();
     } else {
-      element('problem').scrollIntoView({block: 'center'});
+      element('notice').focus();
     }
   }
 
   complain(text) {
-    const place = element('problem');
-    place.textContent = text;
-    place.hidden = text === '';
+    element('problem').textContent = text;
+    element('notice').hidden = text === '';
+    if (text.includes('--')) {
+      element('table-says').open = true;  // The fields of these options.
+    }
   }
 
   progress(percent, words) {
@@ -146,9 +179,12 @@ class App {
     port.onstore = (bytes) => this.keep.set('store', btoa(String.fromCharCode(...bytes)));
     this.mounted = mounted;
     await this.use(port, false);
-    const learnt = before?.settings;
-    if (learnt) {
-      await this.scpi.exchange(learnt);  // Of another version some may be refused; the rest is taken.
+    if (before?.settings) {
+      const expected = await this.scpi.ask('SENS:DEV:SENS?');
+      await this.scpi.exchange(before.settings);  // Of another version some may be refused; the rest is taken.
+      if (before.isOfAnother) {
+        await this.scpi.tell(`SENS:DEV:SENS ${expected}`);  // What is mounted now has its own.
+      }
       await this.showSettings();
     }
     const device = before?.device ? this.keep.get(`device.${before.device}`) : null;
@@ -157,6 +193,12 @@ class App {
       await this.hand(device);
     }
     this.remember();
+  }
+
+  // Those of this page's bench stay when something else is mounted; those of a board are none of its business.
+  settingsToKeep() {
+    const settings = this.isSlow ? null : this.learnt;
+    return settings ? {settings, isOfAnother: true} : null;
   }
 
   async connectSerial() {
@@ -231,7 +273,8 @@ class App {
   }
 
   remember() {
-    this.keep.set('now', {mounted: this.mounted, settings: this.learnt, device: this.device?.id ?? null});
+    this.keep.set('now', {mounted: this.mounted, settings: this.learnt, device: this.device?.id ?? null,
+      chosen: [...this.chosen]});
     this.markStale();
   }
 
@@ -243,21 +286,28 @@ class App {
   // Devices
 
   newDevice(kind, name) {
-    const labels = {...NOTHING.labels};
+    // What stands in the fields is of the device shown; before there is one, of the one to come. Who measures stays.
+    const labels = {};
     LABELS.forEach(([key]) => {
-      labels[key] = element(`label-${key}`).value.trim();
+      labels[key] = this.device && key !== 'operator' ? '' : element(`label-${key}`).value.trim();
     });
     if (kind === 'sweep' && !labels.date) {
-      labels.date = new Date().toISOString().slice(0, 10);
+      labels.date = new Date().toLocaleDateString('sv-SE');
     }
-    const ids = this.keep.get('devices') ?? [];
-    const isTaken = ids.some((id) => this.keep.get(`device.${id}`)?.labels.device === labels.device);
-    if (!labels.device || isTaken || kind === 'table') {
-      labels.device = name;
-    }
+    labels.device = this.freeName(kind === 'table' ? name : labels.device || name);
     const id = `${Date.now().toString(36)}${Math.floor(Math.random() * 1e6).toString(36)}`;
     return {id, kind, labels, source: '', understanding: '', trace: '', reference: '0', model: '', json: '', report: '',
       impulse: [], instrument: this.identity, isSimulated: false, settings: this.learnt};
+  }
+
+  // The name, or with a number behind it where a device has it already.
+  freeName(name) {
+    const taken = new Set(this.keep.devices().map((device) => device.labels.device));
+    let free = name;
+    for (let number = 2; taken.has(free); ++number) {
+      free = `${name} (${number})`;
+    }
+    return free;
   }
 
   // The device's points or parameters are the instrument's again, if they are not yet.
@@ -278,13 +328,22 @@ class App {
   async takeFiles(files) {
     const taken = [];
     const problems = [];
-    for (const file of files) {
+    for (const [i, file] of files.entries()) {
+      this.batch = files.length > 1 ? `${i + 1} of ${files.length}: ${file.name}: ` : '';
       try {
         taken.push(file.name.toLowerCase().endsWith('.json') ? await this.takeResults(file) : await this.takeTable(file));
       } catch (error) {
         problems.push(error.message);
+        const left = files.slice(i + 1).map((other) => other.name);
+        if (error instanceof Stopped && left.length > 0) {
+          problems.push(`not read: ${left.join(', ')}`);
+        }
+        if (error instanceof Stopped) {
+          break;
+        }
       }
     }
+    this.batch = '';
     this.progress(0, '');
     if (taken.length > 1) {
       element('devices').scrollIntoView();
@@ -298,6 +357,10 @@ class App {
     if (file.size > MOST_TABLE_BYTES) {
       throw new Error(`${file.name}: larger than 1 MiB; expected a table of at most 1024 points`);
     }
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    if (isWorkbook(bytes)) {
+      throw new Error(`${file.name}: a workbook, not a table as text; in Excel, save it as CSV (File, Save As, CSV UTF-8)`);
+    }
     const options = {
       uncertainty: element('table-uncertainty').value.trim(),
       units: element('table-units').value.trim(),
@@ -306,7 +369,7 @@ class App {
       reference: element('table-reference').value.trim(),
     };
     this.progress(0, `reading ${file.name}`);
-    const {understanding, lines} = await this.desk.readTable(file.name, new Uint8Array(await file.arrayBuffer()), options);
+    const {understanding, lines} = await this.desk.readTable(file.name, bytes, options);
     const device = this.newDevice('table', file.name.replace(/\.[^.]*$/, ''));
     const trace = lines.map((line) => line.slice(line.indexOf(' ') + 1)).join(',');
     Object.assign(device, {source: file.name, understanding, trace, reference: options.reference || '0'});
@@ -328,19 +391,29 @@ class App {
     if (!results?.version || !results?.model) {
       throw new Error(`${file.name}: this is no results.json of emax`);
     }
-    const device = this.newDevice('results', results.labels?.device || file.name.replace(/\.[^.]*$/, ''));
-    LABELS.slice(1).forEach(([key]) => {
-      device.labels[key] = results.labels?.[key] ?? '';
+    // Read by the program's own code, which says what is missing.
+    await this.desk.compare('energy', 'json', [{name: file.name, json}, {name: `${file.name} again`, json}]);
+    const device = this.newDevice('results', '');
+    LABELS.forEach(([key]) => {
+      const label = results.labels?.[key];
+      device.labels[key] = typeof label === 'string' ? label : '';
     });
+    device.labels.device = this.freeName(device.labels.device || file.name.replace(/\.[^.]*$/, ''));
     Object.assign(device, {source: file.name, json, instrument: ''});
+    try {
+      setCertificate(document.createElement('div'), device);
+    } catch (error) {
+      throw new Error(`${file.name}: not as emax writes it (${error.message})`);
+    }
     this.putDevice(device);
     return device;
   }
 
   async takeModel() {
-    const values = ['s', 'f0', 'beta', 'us', 'uf0', 'ubeta'].map((id) => element(`model-${id}`).value.trim());
+    const hasUncertainties = UNCERTAINTIES.some(([id]) => element(id).value.trim() !== '');
+    const values = numbersOf(hasUncertainties ? [...PARAMETERS, ...UNCERTAINTIES] : PARAMETERS);
     const device = this.newDevice('model', 'Device by its parameters');
-    device.model = values.slice(3).every((value) => value === '') ? values.slice(0, 3).join(',') : values.join(',');
+    device.model = values.join(',');
     device.source = 'parameters as given';
     await this.hand(device);
     this.putDevice(device);
@@ -397,15 +470,20 @@ class App {
 
   async again() {
     await this.hand(this.device);
-    this.device.settings = this.learnt;
     await this.evaluate(this.device);
   }
 
   async evaluate(device) {
     this.job.isStopped = false;
     let problems = [];
+    const began = Date.now();
+    let most = 0;
     try {
-      problems = await this.job.evaluate((percent, stage) => this.progress(percent, `computing: ${stage}`));
+      problems = await this.job.evaluate((percent, stage) => {
+        most = Math.max(most, percent);
+        const advice = Date.now() - began > LONG_MS ? '; fewer trials are quicker (Monte Carlo, in 2)' : '';
+        this.progress(most, `${this.batch}computing: ${stage}${advice}`);
+      });
     } catch (error) {
       if (!(error instanceof Refusal)) {
         throw error;
@@ -414,7 +492,9 @@ class App {
     }
     if (this.job.isStopped) {
       this.progress(0, '');
-      throw new Error('stopped; the points are kept');
+      this.showDevice(device);
+      throw new Stopped(`${device.labels.device}: stopped before its figures were known; what is known of it is kept, and ` +
+        '"Evaluate again" computes them');
     }
     this.progress(100, 'fetching the results');
     try {
@@ -436,6 +516,7 @@ class App {
   putDevice(device) {
     this.keep.put(device);
     this.chosen.add(device.id);
+    this.hideComparison();
     this.showDevice(device);
     this.showDevices();
     this.remember();
@@ -448,12 +529,20 @@ class App {
     });
     setCertificate(element('certificate'), device);
     element('result').hidden = false;
+    this.numberParts();
     element('save-report').hidden = !device.report;
     element('save-json').hidden = !device.json;
     element('save-csv').hidden = !device.trace;
     element('again').hidden = device.isPartial || (!device.trace && !device.model);
     document.title = `${isSimulatedDevice(device) ? 'Simulation - ' : ''}${device.labels.device} - emax`;
     this.markStale();
+  }
+
+  // Those that are there, in their order.
+  numberParts() {
+    document.querySelectorAll('main > section:not([hidden], #words) > h2').forEach((heading, i) => {
+      heading.textContent = `${i + 1}. ${heading.textContent.replace(/^\d+\. /, '')}`;
+    });
   }
 
   relabel() {
@@ -478,9 +567,12 @@ class App {
       choose.checked = this.chosen.has(device.id) && Boolean(device.json);
       choose.disabled = !device.json;
       choose.setAttribute('aria-label', `compare ${device.labels.device}`);
-      choose.addEventListener('change', () => (choose.checked ? this.chosen.add(device.id) : this.chosen.delete(device.id)));
-      const figures = device.report ? figuresOf(device.report)?.rows[0] : null;
-      const figure = figures ? `${figures[1]} ± ${figures[2]}` : '–';
+      choose.addEventListener('change', () => {
+        this.chosen[choose.checked ? 'add' : 'delete'](device.id);
+        this.remember();
+      });
+      const row = figuresOfDevice(device)?.rows[0];
+      const figure = row ? withUncertainty(row) : '–';
       return [choose, device.labels.device, device.labels.serial, figure, device.source,
         this.makeButton('Show', device, () => {
           this.showDevice(device);
@@ -494,6 +586,7 @@ class App {
 
   makeButton(text, device, act) {
     const button = document.createElement('button');
+    button.className = text.toLowerCase();
     button.type = 'button';
     button.textContent = text;
     button.setAttribute('aria-label', `${text} ${device.labels.device}`);
@@ -502,17 +595,51 @@ class App {
   }
 
   delete(device) {
+    if (this.isBusy) {
+      this.complain('something is running; stop it first, or wait');
+      return;
+    }
     if (!window.confirm(`Delete "${device.labels.device}" from this browser? Its points and results are then gone.`)) {
       return;
     }
     this.keep.drop(device.id);
     this.chosen.delete(device.id);
     if (this.device?.id === device.id) {
-      this.device = null;
-      element('result').hidden = true;
+      this.showNoDevice();
     }
+    this.hideComparison();
+    const place = this.keep.devices().length > 0 ? element('device-list') : element('devices');
     this.showDevices();
     this.remember();
+    place.focus();
+  }
+
+  // All that the page keeps; it begins anew.
+  deleteAll() {
+    const question = 'Delete all devices, with their points and results, and the settings of this page from this browser?';
+    if (this.isBusy) {
+      this.complain('something is running; stop it first, or wait');
+    } else if (window.confirm(question)) {
+      this.keep.clear();
+      location.reload();
+    }
+  }
+
+  showNoDevice() {
+    this.device = null;
+    element('result').hidden = true;
+    this.numberParts();
+    LABELS.forEach(([key]) => {
+      element(`label-${key}`).value = '';
+    });
+    document.title = 'emax';
+  }
+
+  // It holds for the devices as they were.
+  hideComparison() {
+    ['comparison', 'save-comparison', 'print-comparison'].forEach((id) => {
+      element(id).hidden = true;
+    });
   }
 
   async compare() {
@@ -540,22 +667,34 @@ class App {
       value: device.value,
       low: device.interval?.[0] ?? null, high: device.interval?.[1] ?? null,
       bound: device.bound ?? null,
+      figure: figureInWords(device.value, device.U, unit),
     }));
     const order = addTo(place, 'ol', 'ranking');
     ranked.forEach((device, i) => {
       const rank = device.rank_best === device.rank_worst ? `${device.rank_best}` : `${device.rank_best}–${device.rank_worst}`;
-      addTo(order, 'li').textContent = `${rank}: ${rows[i].name}, ${shown(device.value)} ${unit}`;
+      const marks = [device.fit_warns ? MARKS.fit : '', device.damping_open ? MARKS.damping : ''].filter(Boolean);
+      addTo(order, 'li').textContent = [`${rank}: ${rows[i].name}, ${rows[i].figure}`, ...marks].join('; ');
     });
     addTo(place, 'p', 'hint').textContent =
-      'Devices that share ranks, as 1–2, cannot be told apart within their uncertainties. Dot: found; bar: interval; stroke: ' +
-      'none exceeds.';
+      'Devices that share ranks, as 1–2, are not told apart: their uncertainties do not allow it, or a warning forbids it; ' +
+      'the text below says which. ± is U (k = 2). Dot: found; bar: interval; stroke: none exceeds.';
     drawRanking(addTo(place, 'div', 'plot'), rows, unit);
     const pre = addTo(place, 'pre', 'report');
     pre.tabIndex = 0;
     pre.setAttribute('aria-label', 'comparison');
     pre.textContent = text;
     element('save-comparison').hidden = false;
+    element('print-comparison').hidden = false;
     place.focus();
+  }
+
+  printComparison() {
+    document.body.classList.add('comparing');
+    const title = document.title;
+    document.title = 'Comparison - emax';
+    window.print();
+    document.title = title;
+    document.body.classList.remove('comparing');
   }
 
   print() {

@@ -23,7 +23,7 @@ function setCertificate(place, device) {
   LABELS.slice(1).forEach(([key, name]) => row(name, device.labels[key]));
   row('Points', [device.source, device.understanding].filter(Boolean).join(': '));
   row('Instrument', device.instrument);
-  for (const [name, value] of conditionsOf(device.report)) {
+  for (const [name, value] of device.report ? conditionsOf(device.report) : conditionsOfResults(results)) {
     row(name, value);
   }
   setFigures(place, device);
@@ -31,6 +31,11 @@ function setCertificate(place, device) {
     for (const text of remarksOf(device.report, kind)) {
       addTo(place, 'p', className).textContent = `${kind === 'Note' ? 'Note' : 'Warning'}: ${text}`;
     }
+  }
+  if (!device.report && Array.isArray(results.warnings)) {
+    results.warnings.forEach((warning) => {
+      addTo(place, 'p', 'warning').textContent = `Warning: ${warning?.text}`;
+    });
   }
   const fit = sectionOf(device.report, 'FIT');
   if (fit) {
@@ -49,7 +54,7 @@ function setCertificate(place, device) {
 }
 
 function setFigures(place, device) {
-  const figures = figuresOf(device.report);
+  const figures = figuresOfDevice(device);
   if (device.isPartial) {
     addTo(place, 'p', 'warning').textContent = 'The sweep broke off before the uncertainties of its points were known. ' +
       'Save points.csv, and read it as a table with an uncertainty of your own.';
@@ -57,15 +62,18 @@ function setFigures(place, device) {
   }
   if (!figures || figures.rows.length === 0) {
     const {fit} = device;
+    if (fit === undefined) {
+      addTo(place, 'p', 'warning').textContent = 'Not evaluated yet: "Evaluate again" computes its figures from the points.';
+      return;
+    }
     const found = fit ? `S = ${shown(fit.S, 6)} V/(m/s²), U = ${shown(2 * fit.uS, 2)} (k = 2)` : '';
     const known = fit ? ` The points give the sensitivity alone: ${found}.` : '';
     addTo(place, 'p', 'warning').textContent = `There are no figures for this device.${known}`;
     return;
   }
   const lead = addTo(place, 'dl', 'headline');
-  const [name, found, expanded] = figures.rows[0];
-  addTo(lead, 'dt').textContent = name;
-  addTo(lead, 'dd').textContent = `${found}${expanded && expanded !== '-' ? ` ± ${expanded}` : ''} % of S\u00a0a`;
+  addTo(lead, 'dt').textContent = figures.rows[0][0];
+  addTo(lead, 'dd').textContent = `${withUncertainty(figures.rows[0])} % of S\u00a0a`;
   addTo(place, 'p', 'hint').textContent = `Largest error: ${figures.note.replace('+-', '±')}.`;
   place.append(makeTable(figures.head, figures.rows));
   addTo(place, 'p', 'hint').textContent = figures.words;

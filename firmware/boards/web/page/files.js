@@ -22,6 +22,7 @@ const LABELS = [
   ['note', 'Note'],
 ];
 
+const BOM = '\ufeff';  // By which Excel knows UTF-8.
 const SIMULATION = 'SIMULATION: no real sensor was measured.\n\n';
 const FIRST_HEADING = /\n\n(?=[A-Z][A-Z0-9 ,-]+[A-Z](?: \(.*\))?\n)/;
 
@@ -32,7 +33,14 @@ function reportWithLabels(device) {
   const isUnmarked = device.isSimulated && !device.report.startsWith('SIMULATION');
   const report = isUnmarked && device.report ? SIMULATION + device.report : device.report;
   const rows = given.map(([key, name]) => `  ${name.padEnd(VALUE_COLUMN - 2)}${device.labels[key]}\n`).join('');
-  return rows ? report.replace(FIRST_HEADING, () => `\n\nLABELS (as given)\n${rows}\n`) : report;
+  const labelled = rows ? report.replace(FIRST_HEADING, () => `\n\nLABELS (as given)\n${rows}\n`) : report;
+  return device.understanding ? reportWithSource(labelled, device) : labelled;
+}
+
+// Where the program names the table and says how it was read.
+function reportWithSource(report, device) {
+  return report.replace(/^( {2}Device {2,}measured points)\n(.*)$/m, (all, front, points) =>
+    `${front}: ${device.source}\n${points}\n${' '.repeat(VALUE_COLUMN)}${device.understanding}`);
 }
 
 function jsonWithLabels(device) {
@@ -40,8 +48,17 @@ function jsonWithLabels(device) {
     return device.json;  // Somebody's file, as it was.
   }
   const members = LABELS.map(([key]) => `    "${key}": ${JSON.stringify(device.labels[key] || null)}`).join(',\n');
-  const json = device.isSimulated ? device.json.replace('\n  "simulated": false', '\n  "simulated": true') : device.json;
+  const simulated = device.isSimulated ? device.json.replace('\n  "simulated": false', '\n  "simulated": true') : device.json;
+  // The points, and the sweep, are for a front end: the program's file has none of them.
+  const plain = simulated.replace(/\n {2}"points": [\s\S]*?(?=\n {2}"model": )/, '');
+  const json = device.understanding ? jsonWithSource(plain, device) : plain;
   return json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
+}
+
+function jsonWithSource(json, device) {
+  return json.replace(/(\n {2}"model": \{[^}]*\n {4}"name": )null/, (all, front) => `${front}${JSON.stringify(device.source)}`)
+    .replace(/(\n {2}"fit": \{[^}]*\n {4}"unknown_phases": \d+)/, (all, front) =>
+      `${front},\n    "read_as": ${JSON.stringify(device.understanding)}`);
 }
 
 // The native form, with expanded uncertainties; without, where a sweep broke off before it knew them.

@@ -65,10 +65,11 @@ class Job {
     await this.scpi.tell('INIT');
     let known = 0;
     return this.follow(SWEEPING, async (percent, stage, points) => {
-      onprogress(percent, stage);
       for (; known < points; ++known) {
         onpoint((await this.scpi.ask(`FETC:FRES:POIN? ${known + 1}`)).split(',').map(Number));
+        onprogress(percent, stage);
       }
+      onprogress(percent, stage);
     });
   }
 

@@ -33,6 +33,14 @@ class Keep {
     }
   }
 
+  clear() {
+    try {
+      Object.keys(localStorage).filter((key) => key.startsWith(PREFIX)).forEach((key) => localStorage.removeItem(key));
+    } catch {
+      // As above.
+    }
+  }
+
   devices() {
     return (this.get('devices') ?? []).map((id) => this.get(`device.${id}`)).filter(Boolean);
   }

@@ -17,6 +17,10 @@ function svgElement(name, attributes, parent) {
   return element;
 }
 
+function raised(exponent) {
+  return [...String(Number(exponent))].map((c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
+}
+
 // As people write it: 1.234, 0.00123, 5.1 × 10⁻⁷.
 function shown(value, digits = 4) {
   if (!Number.isFinite(value)) {
@@ -25,8 +29,7 @@ function shown(value, digits = 4) {
   const size = Math.abs(value);
   if (value !== 0 && (size < 1e-3 || size >= 1e6)) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-    const raised = [...exponent.replace('+', '')].map((c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
-    return `${mantissa.replace('-', '−')} × 10${raised}`;
+    return `${mantissa.replace('-', '−')} × 10${raised(exponent)}`;
   }
   return String(Number(value.toPrecision(digits))).replace('-', '−');
 }
@@ -184,13 +187,15 @@ class Plot {
     this.x = new Scale(least, most, x.isLog, LEFT, width - RIGHT);
     panels.forEach((panel, number) => this.drawPanel(svg, panel, number, width));
     const bottom = height - BOTTOM;
-    for (const tick of this.x.ticks(Math.floor(width / 90))) {
+    const ticks = this.x.ticks(Math.floor(width / 90));
+    const {power, words} = labelsOf(ticks, x.isLog);
+    ticks.forEach((tick, i) => {
       const at = this.x.at(tick);
       svgElement('line', {x1: at, x2: at, y1: bottom, y2: bottom + 4, class: 'axis'}, svg);
-      svgElement('text', {x: at, y: bottom + 16, 'text-anchor': 'middle'}, svg).textContent = shown(tick);
-    }
+      svgElement('text', {x: at, y: bottom + 16, 'text-anchor': 'middle'}, svg).textContent = words[i];
+    });
     svgElement('text', {x: (LEFT + width - RIGHT) / 2, y: height - 4, 'text-anchor': 'middle', class: 'axis-name'}, svg)
-      .textContent = withUnit(x);
+      .textContent = withUnit(x, power);
     this.cursor = svgElement('line', {y1: TOP, y2: bottom, class: 'cursor', visibility: 'hidden'}, svg);
     this.box.replaceChildren(svg);
     this.width = width;
@@ -205,14 +210,16 @@ class Plot {
     const ys = panel.series.flatMap((series) => series.points.flatMap((point) => point.slice(1)));
     const [least, most] = rangeOf([...ys, ...(panel.zero ? [0] : []), ...(panel.also ? [panel.also] : [])], panel.isLog);
     const y = new Scale(least, most, panel.isLog, bottom, top);
-    for (const tick of y.ticks(5)) {
+    const ticks = y.ticks(5);
+    const {power, words} = labelsOf(ticks, panel.isLog);
+    ticks.forEach((tick, i) => {
       const at = y.at(tick);
       svgElement('line', {x1: LEFT, x2: width - RIGHT, y1: at, y2: at, class: 'grid'}, svg);
-      svgElement('text', {x: LEFT - 6, y: at + 4, 'text-anchor': 'end'}, svg).textContent = shown(tick);
-    }
+      svgElement('text', {x: LEFT - 6, y: at + 4, 'text-anchor': 'end'}, svg).textContent = words[i];
+    });
     svgElement('rect', {x: LEFT, y: top, width: width - RIGHT - LEFT, height: PANEL_HEIGHT, class: 'frame'}, svg);
     svgElement('text', {x: 0, y: 0, 'text-anchor': 'middle', class: 'axis-name',
-      transform: `translate(12 ${(top + bottom) / 2}) rotate(-90)`}, svg).textContent = withUnit(panel);
+      transform: `translate(12 ${(top + bottom) / 2}) rotate(-90)`}, svg).textContent = withUnit(panel, power);
     panel.series.forEach((series, k) => this.drawSeries(svg, series, k, y));
     if (panel.title) {
       const title = svgElement('text', {x: width - RIGHT - 6, y: top + 15, 'text-anchor': 'end', class: 'panel-title'}, svg);
@@ -285,8 +292,21 @@ class Plot {
   }
 }
 
-function withUnit(axis) {
-  return axis.unit ? `${axis.label} in ${axis.unit}` : axis.label;
+function withUnit(axis, power = 0) {
+  const unit = [power === 0 ? '' : `10${raised(power)}`, axis.unit].filter(Boolean).join(' ');
+  return unit ? `${axis.label} in ${unit}` : axis.label;
+}
+
+// What stands at the ticks: as many digits as tell them apart, and one power of ten that goes into the axis' name.
+function labelsOf(ticks, isLog) {
+  const most = Math.max(...ticks.map(Math.abs));
+  if (isLog || ticks.length < 2 || !(most > 0)) {
+    return {power: 0, words: ticks.map((tick) => shown(tick))};
+  }
+  const power = most < 1e-2 || most >= 1e5 ? 3 * Math.floor(Math.log10(most) / 3) : 0;
+  const step = (ticks[1] - ticks[0]) / 10 ** power;
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  return {power, words: ticks.map((tick) => (tick / 10 ** power).toFixed(decimals).replace('-', '−'))};
 }
 
 // Of steps the value from there on; of lines the nearest; of points the one at just that place.

@@ -20,21 +20,54 @@ function sectionOf(report, heading) {
   return sectionsOf(report).find((section) => section.heading === heading);
 }
 
+const REMARK = /^ {2}(WARNING|Note): /;
+
+// Lines are filled up to about here; one that ends a sentence earlier ends a remark.
+const FULL_LINE = 84;
+
+// Whether `line` goes on with the remark that the line before is of: it is no row, and there was no room for it before.
+function goesOn(line, before) {
+  if (line.trim() === '' || !line.startsWith('  ') || isRowWithValue(line) || REMARK.test(line)) {
+    return false;
+  }
+  const isRoom = before.length + line.trim().split(' ')[0].length < FULL_LINE;
+  const isLong = before.length > FULL_LINE + 10;
+  return !(before.endsWith('.') && /^ {2}[A-Z]/.test(line) && (isRoom || isLong));
+}
+
 // Every warning and note of a report, each as one line.
 function remarksOf(report, kind) {
   const remarks = [];
-  let open = false;
+  let before = null;
   for (const line of report.split('\n')) {
     if (line.startsWith(`  ${kind}: `)) {
       remarks.push(line.slice(kind.length + 4));
-      open = true;
-    } else if (open && line.startsWith('  ') && line.trim() !== '') {
+      before = line;
+    } else if (before !== null && goesOn(line, before)) {
       remarks[remarks.length - 1] += ` ${line.trim()}`;
+      before = line;
     } else {
-      open = false;
+      before = null;
     }
   }
   return remarks;
+}
+
+// The lines that are of no remark.
+function withoutRemarks(lines) {
+  let before = null;
+  return lines.filter((line) => {
+    const isRemark = REMARK.test(line) || (before !== null && goesOn(line, before));
+    before = isRemark ? line : null;
+    return !isRemark;
+  });
+}
+
+// A mark that stands in a column of its own goes to the name before it.
+function cellsOf(line) {
+  const cells = line.trim().split(/\s{2,}/);
+  const marked = cells.indexOf('*', 1);
+  return marked > 0 ? [...cells.slice(0, marked - 1), `${cells[marked - 1]} *`, ...cells.slice(marked + 1)] : cells;
 }
 
 // The rows of the figures: what, found, U, bound.
@@ -43,10 +76,70 @@ function figuresOf(report) {
   if (!section) {
     return null;
   }
-  const cells = section.lines.map((line) => line.trim().split(/\s{2,}/));
+  const lines = withoutRemarks(section.lines);
+  const cells = lines.map((line) => cellsOf(line));
   const head = cells[0];
   return {note: section.note, head, rows: cells.slice(1).filter((row) => row.length === head.length),
-    words: section.lines.filter((line) => line.trim().split(/\s{2,}/).length === 1).map((line) => line.trim()).join(' ')};
+    words: cells.filter((row) => row.length === 1).map(([text]) => text).join(' ')};
+}
+
+// A row of figures in one line.
+function withUncertainty([, found, expanded]) {
+  return expanded && expanded !== '-' ? `${found} ± ${expanded}` : found;
+}
+
+// A value and its expanded uncertainty as texts, both to the uncertainty's second digit.
+function roundedPair(value, expanded) {
+  if (!Number.isFinite(expanded) || expanded <= 0) {
+    return [shown(value), '-'];
+  }
+  const decimals = Math.min(Math.max(0, 1 - Math.floor(Math.log10(expanded))), 20);
+  return [value.toFixed(decimals), Number(expanded.toPrecision(2)).toFixed(decimals)];
+}
+
+// Both of an energy, too, which may be far below 1.
+function figureInWords(value, expanded, unit) {
+  const power = value > 0 && value < 1e-3 ? Math.floor(Math.log10(value)) : 0;
+  const text = withUncertainty(['', ...roundedPair(value / 10 ** power, expanded / 10 ** power)]);
+  return power === 0 ? `${text} ${unit}` : `(${text}) × 10${raised(power)} ${unit}`;
+}
+
+// The same table from a results.json, where there is no report.
+function figuresOfResults({model, energy, band, ideal, uncertainty}) {
+  if (!model || !energy) {
+    return null;
+  }
+  const percentOf = (squared) => (100 * Math.sqrt(squared / energy.T)) / (model.S * energy.a);
+  const row = (name, value, expanded, bound) =>
+    [name, ...roundedPair(value, expanded), Number.isFinite(bound) ? shown(bound) : '-'];
+  const percent = percentOf(energy.E);
+  const figures = [
+    band?.matched && ['In band, constant delay taken out', band.matched.rms_percent, band.matched.U_percent,
+      band.matched.bound_percent],
+    band && ['In band, with its delay', band.rms_percent, band.U_percent, band.bound_percent],
+    ["The paper's figure, sqrt(E/T)", percent, (percent * uncertainty?.U) / (2 * energy.E), percentOf(energy.bound ?? NaN)],
+    ideal && ['The same of an ideal sensor', ideal.rms_percent, NaN, NaN],
+  ];
+  return {note: 'at the estimates; worst rms error of signals within ±a, in % of S a',
+    head: ['error', 'found', 'U (k = 2)', 'none exceeds'],
+    rows: figures.filter((figure) => Number.isFinite(figure?.[1])).map((figure) => row(...figure)),
+    words: 'From its results.json, which has neither points nor report.'};
+}
+
+function conditionsOfResults({filter, energy}) {
+  return filter && energy ? [
+    ['Reference filter', `Butterworth low-pass, order ${filter.order}, cutoff ${filter.cutoff} Hz`],
+    ['Time T', `${shown(1e3 * energy.T)} ms`],
+    ['Limit a', `${shown(energy.a, 6)} m/s²`],
+    ['Criterion', String(energy.criterion)],
+  ] : [];
+}
+
+function figuresOfDevice(device) {
+  if (device.report || !device.json) {
+    return figuresOf(device.report);
+  }
+  return figuresOfResults(JSON.parse(device.json));
 }
 
 const CONDITIONS = ['Reference filter', 'Filter gain', 'Time T', 'Limit a', 'Criterion'];
@@ -73,10 +166,8 @@ function setSection(section) {
   part.append(heading);
   let list = null;
   let text = null;
-  let inRemark = false;
-  for (const line of section.lines) {
-    const isRow = isRowWithValue(line);
-    if (isRow && !inRemark) {
+  for (const line of withoutRemarks(section.lines)) {
+    if (isRowWithValue(line)) {
       list ??= addTo(part, 'dl', 'rows');
       text = null;
       const name = line.slice(0, VALUE_COLUMN).trim();
@@ -91,11 +182,6 @@ function setSection(section) {
     list = null;
     if (line.trim() === '') {
       text = null;
-      inRemark = false;
-      continue;
-    }
-    inRemark ||= /^ {2}(WARNING|Note): /.test(line);
-    if (inRemark) {
       continue;
     }
     if (!text) {

@@ -6,6 +6,11 @@ async function runLines(text) {
   element('job').hidden = true;
   element('run').hidden = false;
   element('lines').textContent = text;
+  element('leave-run').addEventListener('click', (event) => {
+    event.preventDefault();
+    location.hash = '';
+    location.reload();
+  });
   const state = element('run-state');
   state.textContent = 'running';
   const port = await SimulatedPort.open([0, 0, 0], null);

@@ -36,6 +36,16 @@ function settingsOf(learnt) {
   return [...values].map(([header, value]) => ({header, value}));
 }
 
+// 2.0E-3 as 0.002, also in lists.
+function readable(value) {
+  return value.split(',').map((part) => (/^-?[\d.]+E-?\d+$/.test(part) ? String(Number(part)) : part)).join(',');
+}
+
+// Whose a setting is that both sensors have.
+function ownerOf(header) {
+  return {'SENS:REF': 'Reference: ', 'SENS:DEV': 'Device: '}[header.slice(0, 8)] ?? '';
+}
+
 class SettingsForm {
   constructor(place, commands, change) {
     this.place = place;
@@ -53,8 +63,8 @@ class SettingsForm {
     }
     for (const {header, value} of settings) {
       const field = this.fields.get(header);
-      field.input.value = value;
-      field.value = value;
+      field.value = readable(value);
+      field.put();
     }
   }
 
@@ -63,7 +73,8 @@ class SettingsForm {
     this.place.replaceChildren();
     const rest = new Set(settings);
     for (const [title, pattern] of [...GROUPS, ['Others', /./]]) {
-      const members = [...rest].filter((setting) => pattern.test(setting.header));
+      // *LRN? has what depends on others first; people begin with what all depends on.
+      const members = [...rest].filter((setting) => pattern.test(setting.header)).reverse();
       if (members.length > 0) {
         const details = addTo(this.place, 'details');
         addTo(details, 'summary').textContent = title;
@@ -81,9 +92,9 @@ class SettingsForm {
   addField(place, {header, value}) {
     const command = this.words.get(header) ?? {words: header, parameters: ''};
     const label = addTo(place, 'label');
-    label.append(`${command.words} `);
+    label.append(`${ownerOf(header)}${command.words} `);
     addTo(label, 'code').textContent = header;
-    const choices = /^[A-Za-z|]+$/.test(command.parameters) ? command.parameters.split('|') : [];
+    const choices = /^[A-Za-z0-9|]+$/.test(command.parameters) ? command.parameters.split('|') : [];
     const input = addTo(label, choices.length > 1 ? 'select' : 'input');
     for (const choice of choices) {
       addTo(input, 'option').value = shortForm(choice);
@@ -91,7 +102,17 @@ class SettingsForm {
     }
     const hint = addTo(label, 'span', 'hint');
     hint.textContent = command.parameters;
+    const isSwitch = command.parameters === '<on>';
+    if (isSwitch) {
+      input.type = 'checkbox';
+      label.className = 'check';
+    }
     const field = {input, hint, value, parameters: command.parameters};
+    field.put = () => {
+      input.value = field.value;
+      input.checked = isSwitch && field.value !== '0';
+    };
+    field.taken = () => (isSwitch ? String(Number(input.checked)) : input.value);
     input.autocomplete = 'off';
     input.dataset.header = header;
     input.addEventListener('change', () => this.changed(header));
@@ -119,11 +140,11 @@ class SettingsForm {
   async changed(header) {
     const field = this.fields.get(header);
     field.input.removeAttribute('aria-invalid');
-    const problem = await this.change(header, field.input.value);
+    const problem = await this.change(header, field.taken());
     if (problem) {
       field.hint.textContent = problem;
       field.hint.classList.add('refused');
-      field.input.value = field.value;
+      field.put();
       field.input.setAttribute('aria-invalid', 'true');
     } else {
       field.hint.textContent = field.parameters;
