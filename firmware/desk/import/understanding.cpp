@@ -28,8 +28,23 @@ void add_uncertainty_units(const Conversions& by, std::string& text) {
   }
 }
 
-// The coverage factor where it is not 2, and what --uncertainty says.
-void add_uncertainties(const Conversions& by, const ImportOptions& options, std::string& text) {
+// Nothing says a coverage factor, and the name is neither of the native form (u_...) nor the symbol
+// U, which is that of an expanded uncertainty.
+bool is_coverage_assumed(const Conversion& u, const FoundTable& table) noexcept {
+  if (!u.is_there || table.is_native || table.statements.coverage > 0.0 ||
+      table.columns[u.column].coverage > 0.0) {
+    return false;
+  }
+  const std::string& name = u.name;
+  const bool is_letter_next =
+      name.size() > 1 && ((name[1] >= 'a' && name[1] <= 'z') || (name[1] >= 'A' && name[1] <= 'Z'));
+  const bool is_symbol = !name.empty() && name[0] == 'U' && !is_letter_next;
+  return !is_symbol && name.compare(0, 2, "u_") != 0;
+}
+
+// The coverage factor where it is not 2 or nobody has said so, and what --uncertainty says.
+void add_uncertainties(const FoundTable& table, const Conversions& by, const ImportOptions& options,
+                       std::string& text) {
   const Conversion& of_amplitude = by.u_amplitude();
   const Conversion& of_phase = by.u_phase();
   const bool are_equal =
@@ -40,6 +55,8 @@ void add_uncertainties(const Conversions& by, const ImportOptions& options, std:
             text_of_coverage(of_phase.coverage) + " (phase)";
   } else if ((of_amplitude.is_there || of_phase.is_there) && coverage != kImportCoverage) {
     text += coverage == 1.0 ? ", standard uncertainties" : ", " + text_of_coverage(coverage);
+  } else if (is_coverage_assumed(of_amplitude, table) || is_coverage_assumed(of_phase, table)) {
+    text += ", uncertainties taken as " + text_of_coverage(kImportCoverage);
   }
   const bool is_amplitude_given = !of_amplitude.is_there;
   const bool is_phase_given = by.phase().is_there && !of_phase.is_there;
@@ -94,7 +111,7 @@ std::string understanding_of(const FoundTable& table, const Conversions& by,
   text += by.amplitude().unit.name;
   text += by.phase().is_there ? std::string(", ") + by.phase().unit.name : ", no phase";
   add_uncertainty_units(by, text);
-  add_uncertainties(by, options, text);
+  add_uncertainties(table, by, options, text);
   text += "; " + count_of(merged.rows.size(), "point");
   if (merged.repeats > 0) {
     text += ", " + std::to_string(merged.repeats) + " of them the mean of repeated rows";

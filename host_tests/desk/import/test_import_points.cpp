@@ -478,6 +478,20 @@ TEST(Import, MarksOfThousands) {
   }
 }
 
+TEST(Import, SaysWhichCoverageFactorItAssumes) {
+  const std::string words = ", uncertainties taken as k = 2";
+  const auto says = [&words](const std::string& header) {
+    return imported(header + "\n" + kRows).understanding.find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(says("Frequency,Magnitude,Phase,u(Magnitude),u(Phase)"));
+  EXPECT_TRUE(says("Frequency,Magnitude,Phase,Uncertainty (Magnitude),Uncertainty (Phase)"));
+  // The native form, the symbol of an expanded uncertainty, and where it is stated.
+  EXPECT_FALSE(says("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"));
+  EXPECT_FALSE(says("Frequency,Magnitude,Phase,U(Magnitude),U(Phase)"));
+  EXPECT_FALSE(says("Frequency,Magnitude,Phase,u(Magnitude) k=2,u(Phase) k=2"));
+  EXPECT_FALSE(says("# k = 2\nFrequency,Magnitude,Phase,u(Magnitude),u(Phase)"));
+}
+
 TEST(Import, UnitsBehindNumbers) {
   constexpr double kG = 9.80665;
   const ImportedPoints found = imported(
