@@ -221,7 +221,7 @@ class Devices(PageTest):
         ranked = json.loads(self.succeed("compare", "--json", *names))["devices"]
         self.assertEqual([line.split(": ")[1].split(",")[0] for line in ranking], [device["device"] for device in ranked])
         for line, device in zip(ranking, ranked):
-            value, expanded = map(float, re.search(r", ([\d.]+) ± ([\d.]+) % of S a", line).groups())
+            value, expanded = map(float, re.search(r", ([\d.]+) ± ([\d.]+) %\u00a0of\u00a0S\u00a0a", line).groups())
             digits = len(re.search(r"\.(\d+) ±", line)[1])
             self.assertAlmostEqual(value, device["value"], delta=0.5001 * 10**-digits)
             self.assertAlmostEqual(expanded, device["U"], delta=0.05 * device["U"])
@@ -524,6 +524,36 @@ class Readers(PageTest):
         values = self.browser.evaluate("document.querySelector('.values').textContent")
         begin = f"frequency {frequency:.5g} Hz · measured {amplitude:.5g} V/(m/s²) · fitted "
         self.assertTrue(values.startswith(begin), values)
+
+    def test_see_the_error_and_the_bound(self):
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:CALC:TREN:TIME 0.002,0.003")
+        self.drop(DATA / "tables" / "plain.csv")
+        energy = self.results()["energy"]
+        # Every value of a picture stands in its table, which is made once it is opened.
+        self.browser.evaluate("document.querySelectorAll('.numbers-of-plot').forEach((part) => { part.open = true; })")
+        self.wait_for("document.querySelectorAll('.numbers-of-plot table').length === 4")
+        tables = self.browser.evaluate(
+            "[...document.querySelectorAll('.numbers-of-plot table')].map((table) => [...table.rows].map((row) =>"
+            " [...row.cells].map((cell) => cell.textContent)))"
+        )
+
+        def number(cell):
+            mantissa, _, power = cell.replace("\u2212", "-").partition(" × 10")
+            digits = power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+            return float(mantissa) * 10.0 ** int(digits or 0)
+
+        head, *rows = tables[1]
+        column = head.index("error: y in V")
+        error = [(1e-3 * number(row[0]), number(row[column])) for row in rows if row[column]]
+        self.assertAlmostEqual(error[-1][0], energy["T"], delta=1e-9)
+        area = sum((t1 - t0) * (y0 * y0 + y1 * y1) / 2 for (t0, y0), (t1, y1) in zip(error, error[1:]))
+        self.assertAlmostEqual(area / energy["E"], 1.0, delta=0.01)
+        head, *rows = tables[3]
+        column = head.index("none exceeds: E in V² s")
+        bounds = [number(row[column]) for row in rows if row[column]]
+        self.assertEqual(len(bounds), 1)
+        self.assertAlmostEqual(bounds[0] / energy["bound"], 1.0, delta=1e-5)
 
     def test_see_ticks_apart_from_each_other_and_from_the_axis(self):
         self.open(390)

@@ -661,7 +661,7 @@ class App {
     const place = element('comparison');
     place.hidden = false;
     place.replaceChildren();
-    const unit = rankedBy === 'energy' ? 'V² s' : '% of S a';
+    const unit = rankedBy === 'energy' ? 'V²\u00a0s' : '%\u00a0of\u00a0S\u00a0a';
     const rows = ranked.map((device) => ({
       name: [device.device ?? device.file, device.serial].filter(Boolean).join(' '),
       value: device.value,

@@ -85,12 +85,12 @@ function setPictures(place, device, results) {
     new Plot(pictures, responsePicture(pointsOf(device.trace), results.model));
   }
   if (results.energy) {
-    new Plot(pictures, signalPicture(results));
+    new Plot(pictures, signalPicture(results, device.impulse));
   }
   if (device.impulse?.length > 0) {
-    new Plot(pictures, impulsePicture(device.impulse));
+    new Plot(pictures, impulsePicture(device.impulse, results.impulse_response ?? {}));
   }
   if (results.trend?.points?.length > 1) {
-    new Plot(pictures, trendPicture(results.trend));
+    new Plot(pictures, trendPicture(results));
   }
 }

@@ -3,7 +3,9 @@
 const SWEEPING = 8 + 16;
 const COMPUTING = 256;
 const SLOW_MS = 120000;
-const IMPULSE_POINTS = 240;
+const FEWEST_OF_IMPULSE = 240;
+const MOST_OF_IMPULSE = 1200;
+const STEPS_PER_PERIOD = 20;  // Enough to integrate over.
 const IMPULSE_BATCH = 40;
 
 class Job {
@@ -99,12 +101,17 @@ class Job {
     return S > 0 ? {S, uS} : null;
   }
 
-  async impulse({impulse_response: response, energy}) {
+  // As long as it lives, and as closely as it rings, if that takes not too many values.
+  async impulse({impulse_response: response, energy, model, filter}) {
     if (!response || !energy) {
       return [];
     }
-    const length = Math.min(energy.T, response.settling_time_s > 0 ? 1.5 * response.settling_time_s : energy.T);
-    const times = Array.from({length: IMPULSE_POINTS + 1}, (_, i) => Number(((i * length) / IMPULSE_POINTS).toPrecision(6)));
+    const life = response.settling_time_s > 0 ? 4 * response.settling_time_s : energy.T;
+    const whole = Math.min(energy.T, life);
+    const wanted = Math.ceil(STEPS_PER_PERIOD * Math.max(model.f0, filter.cutoff) * whole);
+    const length = wanted <= MOST_OF_IMPULSE ? whole : Math.min(energy.T, (1.5 / 4) * life);
+    const steps = wanted <= MOST_OF_IMPULSE ? Math.max(wanted, FEWEST_OF_IMPULSE) : FEWEST_OF_IMPULSE;
+    const times = Array.from({length: steps + 1}, (_, i) => Number(((i * length) / steps).toPrecision(12)));
     const values = [];
     for (let i = 0; i < times.length; i += IMPULSE_BATCH) {
       const query = `CALC:IMP? ${times.slice(i, i + IMPULSE_BATCH).join(',')}`;

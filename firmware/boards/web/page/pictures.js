@@ -1,6 +1,8 @@
 // The pictures of a device, from its results.json and its points; and the one of a comparison.
 
 const RESPONSE_STEPS = 240;
+const MOST_ERROR_STEPS = 1000;
+const MOST_OFF = 0.01;  // Of the energy of an error that is shown; no eye sees less.
 
 // Points as FETCh:TRACe? has them: f, A, phi, U(A), U(phi) with k = 2; an unknown phase has a huge U.
 function pointsOf(trace) {
@@ -52,7 +54,43 @@ function stepsOf(times, duration, limit) {
   return points;
 }
 
-function signalPicture(results) {
+// The integral of k at its times: through each three of them goes a parabola.
+function integralOf(impulse) {
+  const step = impulse[1][0] - impulse[0][0];
+  const sums = [0];
+  for (let i = 1; i < impulse.length; ++i) {
+    const at = Math.min(i, impulse.length - 2);  // The middle one.
+    const [before, middle, after] = [at - 1, at, at + 1].map((j) => impulse[j][1]);
+    const area = i === at ? 5 * before + 8 * middle - after : 5 * after + 8 * middle - before;
+    sums.push(sums.at(-1) + (step / 12) * area);
+  }
+  return sums;
+}
+
+// y(t) of sensor minus filter for the worst signal, a at the start: [t, y] from its impulse response. Empty where that is
+// known too coarsely, which shows in an energy that is not the instrument's.
+function errorOf({energy}, impulse) {
+  if (energy.criterion !== 'ise' || !(impulse?.length > 2)) {
+    return [];
+  }
+  const step = impulse[1][0] - impulse[0][0];
+  const sums = integralOf(impulse);
+  const answer = (t) => {
+    const at = Math.min(Math.max(t, 0) / step, sums.length - 1);
+    const i = Math.min(Math.floor(at), sums.length - 2);
+    return sums[i] + (at - i) * (sums[i + 1] - sums[i]);
+  };
+  const steps = Math.min(Math.max(Math.round(energy.T / step), 1), MOST_ERROR_STEPS);
+  const points = Array.from({length: steps + 1}, (_, i) => {
+    const t = (i * energy.T) / steps;
+    const turns = energy.switch_times.reduce((sum, at, k) => sum + (k % 2 === 0 ? -2 : 2) * answer(t - at), answer(t));
+    return [t, energy.a * turns];
+  });
+  const found = points.reduce((sum, [, y], i) => sum + (i === 0 || i === steps ? 0.5 : 1) * y * y, 0) * (energy.T / steps);
+  return Math.abs(found / energy.E - 1) < MOST_OFF ? points : [];
+}
+
+function signalPicture(results, impulse) {
   const {energy, band} = results;
   const panels = [];
   const room = 0.35 * energy.a;  // For the title of the panel.
@@ -65,23 +103,32 @@ function signalPicture(results) {
     add('worst signal in band, with the delay', band.switch_times);
   }
   add("worst signal of the paper's figure", energy.switch_times);
+  const error = errorOf(results, impulse);
+  if (error.length > 0) {
+    panels.push({title: 'error that this last signal causes', label: 'y', unit: 'V', zero: true,
+      series: [{name: 'error', kind: 'line', points: error.map(([t, y]) => [1e3 * t, y])}]});
+  }
   return {title: 'The signals that cause the largest errors',
     note: 'Each panel has one of them; none within ±a is known to be worse.',
     x: {label: 'time', unit: 'ms'}, panels};
 }
 
-function impulsePicture(impulse) {
+// Until it has settled, and half as long again.
+function impulsePicture(whole, {settling_time_s: settling}) {
+  const impulse = whole.filter(([t]) => !(settling > 0) || t <= 1.5 * settling);
   return {title: 'Impulse response of the error', x: {label: 'time', unit: 'ms'},
     panels: [{label: 'k', unit: 'V/(m/s)', zero: true,
       series: [{name: 'sensor minus filter', kind: 'line', points: impulse.map(([t, k]) => [1e3 * t, k])}]}]};
 }
 
-function trendPicture(trend) {
+function trendPicture({trend, energy}) {
   const points = trend.points.map(([t, e]) => [1e3 * t, e]);
+  const known = Number.isFinite(energy?.bound) ? [[1e3 * energy.T, energy.bound]] : [];
   return {title: 'Largest energy against the length of the signal', x: {label: 'length T', unit: 'ms'},
     panels: [{label: 'E', unit: 'V² s', zero: true, series: [
       {name: 'found', kind: 'points', points},
-      {name: 'line', kind: 'line', points: points.map(([ms]) => [ms, trend.slope * ms * 1e-3 + trend.intercept])}]}]};
+      {name: 'line', kind: 'line', points: points.map(([ms]) => [ms, trend.slope * ms * 1e-3 + trend.intercept])},
+      ...(known.length > 0 ? [{name: 'none exceeds', kind: 'points', points: known}] : [])]}]};
 }
 
 // Values with their intervals, a row each. rows: {name, value, low, high, bound}, in percent of S a.
