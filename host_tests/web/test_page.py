@@ -11,8 +11,11 @@ import subprocess
 import urllib.parse
 
 from page_test import DATA, PAGE, PROGRAM, PageTest, main
+
 import results_schema
 
+FIGURES = "[...document.querySelectorAll('#certificate > .wide tbody tr')].map((r) => [...r.cells].map((c) => c.textContent))"
+PARTS = ["filter", "impulse_response", "energy", "band", "ideal", "uncertainty", "monte_carlo", "trend", "warnings"]
 README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
 MODEL = "CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004"
 EVERYTHING = f"""\
@@ -100,7 +103,7 @@ class Tables(PageTest):
                 put_in = printed[printed.index("\nWHAT WAS PUT IN") : printed.index("\nFIT")]
                 self.assertIn(put_in, self.saved("save-report"))
                 self.assertEqual(got["labels"]["device"], path.stem)
-                for part in ["filter", "impulse_response", "energy", "band", "ideal", "uncertainty", "monte_carlo", "trend", "warnings"]:
+                for part in PARTS:
                     self.assertEqual(got[part], expected[part], part)
                 for parameter in ["S", "f0", "beta", "uS", "uf0", "ubeta", "covariance", "chi2", "dof"]:
                     self.assertEqual(got["model"][parameter], expected["model"][parameter], parameter)
@@ -158,9 +161,7 @@ class Tables(PageTest):
             ],
         )
         report = self.saved("save-report")
-        rows = self.browser.evaluate(
-            "[...document.querySelectorAll('#certificate > .wide tbody tr')].map((r) => [...r.cells].map((c) => c.textContent))"
-        )
+        rows = self.browser.evaluate(FIGURES)
         printed = report.split("none exceeds\n")[1].split("\n  Note:")[0].splitlines()
         self.assertEqual([line.replace("*", " ").split() for line in printed],
                          [" ".join(row).replace("*", " ").split() for row in rows])
@@ -283,6 +284,16 @@ class Devices(PageTest):
         self.assertEqual(self.browser.evaluate(cells.format(1)), ["piezo_a", "piezo_a (2)"])
         self.assertIn(before[0], self.text("certificate"))
         self.assertEqual(self.saved("save-json"), path.read_text(encoding="utf-8"))
+        # The figures of the report, to its digits; a comparison names both as they are called here.
+        alone = self.browser.evaluate(FIGURES)
+        self.submit("compare")
+        self.wait_for("!document.getElementById('comparison').hidden")
+        self.idle()
+        ranking = self.browser.evaluate("[...document.querySelectorAll('.ranking li')].map((item) => item.textContent)")
+        self.assertEqual(sorted(line.split(",")[0] for line in ranking), ["1–2: piezo_a", "1–2: piezo_a (2)"])
+        self.browser.evaluate("document.querySelector('#device-list .show').click()")
+        self.idle()
+        self.assertEqual([row[1:] for row in alone], [row[1:] for row in self.browser.evaluate(FIGURES)])
         # A name that is none, and a file that only looks like one.
         results = json.loads(path.read_text(encoding="utf-8"))
         path.write_text(json.dumps({**results, "labels": {"device": {"a": 1}, "serial": [2]}}), encoding="utf-8")
@@ -549,6 +560,11 @@ class Readers(PageTest):
         self.assertAlmostEqual(error[-1][0], energy["T"], delta=1e-9)
         area = sum((t1 - t0) * (y0 * y0 + y1 * y1) / 2 for (t0, y0), (t1, y1) in zip(error, error[1:]))
         self.assertAlmostEqual(area / energy["E"], 1.0, delta=0.01)
+        drawn = self.browser.evaluate(
+            "[...document.querySelectorAll('#certificate .dot.s2')].map((dot) => getComputedStyle(dot).stroke)"
+        )
+        self.assertEqual(len(drawn), 1)
+        self.assertNotEqual(drawn[0], "none")
         head, *rows = tables[3]
         column = head.index("none exceeds: E in V² s")
         bounds = [number(row[column]) for row in rows if row[column]]
@@ -586,8 +602,9 @@ class Readers(PageTest):
         self.idle()
         ticks = self.browser.evaluate(
             "(() => { const texts = [...document.querySelector('#certificate svg').querySelectorAll('[text-anchor=end]')];"
-            " return texts.slice(0, texts.findIndex((text, i) => i > 0 && text.y.baseVal[0].value > texts[i - 1].y.baseVal[0].value))"
-            ".map((text) => text.textContent); })()"
+            " const heights = texts.map((text) => text.y.baseVal[0].value);"
+            " const end = heights.findIndex((height, i) => i > 0 && height > heights[i - 1]);"  # The panel below begins.
+            " return texts.slice(0, end).map((text) => text.textContent); })()"
         )
         self.assertGreaterEqual(len(ticks), 3)
         self.assertEqual(len(set(ticks)), len(ticks), ticks)

@@ -644,7 +644,7 @@ class App {
 
   async compare() {
     const devices = this.keep.devices().filter((device) => this.chosen.has(device.id) && device.json)
-      .map((device) => ({name: device.labels.device, json: jsonWithLabels(device)}));
+      .map((device) => ({name: device.labels.device, json: jsonToCompare(device)}));
     if (devices.length < 2) {
       throw new Error('choose two devices or more');
     }

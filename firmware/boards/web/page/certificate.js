@@ -21,7 +21,7 @@ function setCertificate(place, device) {
     }
   };
   LABELS.slice(1).forEach(([key, name]) => row(name, device.labels[key]));
-  row('Points', [device.source, device.understanding].filter(Boolean).join(': '));
+  row(device.kind === 'results' ? 'Results' : 'Points', [device.source, device.understanding].filter(Boolean).join(': '));
   row('Instrument', device.instrument);
   for (const [name, value] of device.report ? conditionsOf(device.report) : conditionsOfResults(results)) {
     row(name, value);

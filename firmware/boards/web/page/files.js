@@ -55,6 +55,15 @@ function jsonWithLabels(device) {
   return json.replace(/^(\{\n {2}"version": "[^"]*",\n)/, (all, front) => `${front}  "labels": {\n${members}\n  },\n`);
 }
 
+// Under the name that it has here.
+function jsonToCompare(device) {
+  if (device.kind !== 'results') {
+    return jsonWithLabels(device);
+  }
+  const labels = Object.fromEntries(LABELS.map(([key]) => [key, device.labels[key] || null]));
+  return JSON.stringify({...JSON.parse(device.json), labels});
+}
+
 function jsonWithSource(json, device) {
   return json.replace(/(\n {2}"model": \{[^}]*\n {4}"name": )null/, (all, front) => `${front}${JSON.stringify(device.source)}`)
     .replace(/(\n {2}"fit": \{[^}]*\n {4}"unknown_phases": \d+)/, (all, front) =>

@@ -49,7 +49,8 @@ function responsePicture(points, model) {
 
 function stepsOf(times, duration, limit) {
   const points = [[0, limit]];
-  (Array.isArray(times) ? times : []).filter((t) => t < duration).forEach((t, i) => points.push([1e3 * t, i % 2 === 0 ? -limit : limit]));
+  const turns = Array.isArray(times) ? times.filter((t) => t < duration) : [];
+  turns.forEach((t, i) => points.push([1e3 * t, i % 2 === 0 ? -limit : limit]));
   points.push([1e3 * duration, points.at(-1)[1]]);
   return points;
 }

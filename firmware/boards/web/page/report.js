@@ -97,6 +97,13 @@ function roundedPair(value, expanded) {
   return [value.toFixed(decimals), Number(expanded.toPrecision(2)).toFixed(decimals)];
 }
 
+// A bound to four digits: never below itself.
+function roundedUp(bound) {
+  const decimals = 3 - Math.floor(Math.log10(bound));
+  const power = 10 ** decimals;
+  return (Math.ceil(bound * power * (1 - 1e-12)) / power).toFixed(Math.min(Math.max(0, decimals), 20));
+}
+
 // Both of an energy, too, which may be far below 1.
 function figureInWords(value, expanded, unit) {
   const power = value > 0 && value < 1e-3 ? Math.floor(Math.log10(value)) : 0;
@@ -111,7 +118,7 @@ function figuresOfResults({model, energy, band, ideal, uncertainty}) {
   }
   const percentOf = (squared) => (100 * Math.sqrt(squared / energy.T)) / (model.S * energy.a);
   const row = (name, value, expanded, bound) =>
-    [name, ...roundedPair(value, expanded), Number.isFinite(bound) ? shown(bound) : '-'];
+    [name, ...roundedPair(value, expanded), bound > 0 ? roundedUp(bound) : '-'];
   const percent = percentOf(energy.E);
   const figures = [
     band?.matched && ['In band, constant delay taken out', band.matched.rms_percent, band.matched.U_percent,
@@ -126,12 +133,14 @@ function figuresOfResults({model, energy, band, ideal, uncertainty}) {
     words: 'From its results.json, which has neither points nor report.'};
 }
 
+const CRITERIA = {ise: 'integral-square error', difference: 'difference of the energies', band: 'error in band'};
+
 function conditionsOfResults({filter, energy}) {
   return filter && energy ? [
     ['Reference filter', `Butterworth low-pass, order ${filter.order}, cutoff ${filter.cutoff} Hz`],
     ['Time T', `${shown(1e3 * energy.T)} ms`],
     ['Limit a', `${shown(energy.a, 6)} m/s²`],
-    ['Criterion', String(energy.criterion)],
+    ['Criterion', CRITERIA[energy.criterion] ?? String(energy.criterion)],
   ] : [];
 }
 
