@@ -32,8 +32,9 @@ struct ImportedPoints {
 /// lines below it, what it is in; columns of other names are not used. Of the lines before it and
 /// of comments a coverage factor and units are read ("k = 2", "units: Hz, mV/g"). A table without a
 /// header is the native form, f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg. Uncertainties are
-/// expanded ones with k = 2 unless the table says another k. A column u_common is what all points
-/// have in common, and is taken out of u_amplitude; a comment "# shared:" is what they share else.
+/// expanded ones with k = 2 unless the table says another k; the understanding says so where the
+/// names are not of the native form and nothing says it. A column u_common is what all points have
+/// in common, and is taken out of u_amplitude; a comment "# shared:" is what they share else.
 ///
 /// Points are put in order. Rows of the same frequency are one point: means of amplitude and
 /// phase, and u^2 the mean of theirs plus the variance of the mean by their scatter; what a row
