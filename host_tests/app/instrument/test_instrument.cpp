@@ -634,6 +634,18 @@ TEST(Instrument, TellsInJsonWhatThePointsDetermine) {
   EXPECT_EQ(i.errors(), "");
 }
 
+// Of trials that the settings have made stale there are neither numbers nor warnings.
+TEST(Instrument, WarnsInJsonOfWhatIsThere) {
+  InstrumentBench i;
+  const std::string few = "\"about\": \"monte_carlo\"";
+  (void)i.ask("CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;:CALC:MCAR:TRI 1000");
+  (void)i.ask("CALC:MCAR?");
+  EXPECT_NE(i.ask("FETC:JSON?").find(few), std::string::npos);
+  (void)i.ask("CALC:MCAR:TRI 2000");
+  EXPECT_EQ(i.ask("FETC:JSON?").find(few), std::string::npos);
+  EXPECT_EQ(i.errors(), "");
+}
+
 // The numbers are those of the other queries; what is not there is null.
 TEST(Instrument, FetchesEverythingAsJson) {
   InstrumentBench i;

@@ -421,11 +421,11 @@ void write_warning(const char* about, const char* words, double least_s,
   json.close();
 }
 
-void write_warnings(const EvaluationResults& results, const ReportContext& context, bool is_valid,
+void write_warnings(const EvaluationResults& results, const ReportContext& context,
                     JsonWriter& json) noexcept {
   json.open("warnings", '[');
   for (const Warning warning : kWarnings) {
-    if (is_valid && holds(warning, results, context)) {
+    if (holds(warning, results, context)) {
       write_warning(about(warning), words_of(warning), least_time_s(warning, results), json);
     }
   }
@@ -701,6 +701,23 @@ void write_trials(const InstrumentState& state, JsonWriter& json) noexcept {
   }
 }
 
+// Of the parts that the settings of now leave valid.
+void write_warnings(const InstrumentState& state, const ReportContext& context,
+                    JsonWriter& json) noexcept {
+  json.open("warnings", '[');
+  for (const Warning warning : kWarnings) {
+    const ReportSection place = place_of(warning);
+    const bool is_valid = place == ReportSection::kMonteCarlo    ? state.has_trials
+                          : place == ReportSection::kUncertainty ? state.has_uncertainty
+                                                                 : state.has_energy;
+    if (is_valid && holds(warning, state.evaluation, context)) {
+      write_warning(about(warning), words_of(warning), least_time_s(warning, state.evaluation),
+                    json);
+    }
+  }
+  json.close(']');
+}
+
 /// What stands where there is no energy.
 void write_nothing_evaluated(JsonWriter& json) noexcept {
   for (const char* part : {"filter", "impulse_response", "energy", "band", "band_refused", "ideal",
@@ -729,7 +746,7 @@ void write_instrument_json(const InstrumentState& state, TextWriter& out) noexce
   write_error_system(state, json);
   write_energies(state, json);
   write_trials(state, json);
-  write_warnings(state.evaluation, context, state.has_energy, json);
+  write_warnings(state, context, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
@@ -751,7 +768,7 @@ void write_json(const EvaluationResults& results, const ReportContext& context,
   write_uncertainty(results, json);
   write_monte_carlo(results, json);
   write_trend(results, json);
-  write_warnings(results, context, true, json);
+  write_warnings(results, context, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
@@ -777,7 +794,7 @@ void write_sensitivity_json(const EvaluationResults& results, const ReportContex
   write_fit(results, context, json);
   write_bench(context.measurement, nullptr, json);
   write_nothing_evaluated(json);
-  write_warnings(results, context, true, json);
+  write_warnings(results, context, json);
   json.boolean("simulated", is_simulated(context));
   json.close();
   out.line();
