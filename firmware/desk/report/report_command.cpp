@@ -210,9 +210,10 @@ Problem run_report(Span<const std::string_view> arguments) {
   const bool has_table = !options.points_path.empty() && !problem_of_work;
   const std::string cause = has_table ? cause_of(evaluation.fit, imported.names_phase_unit) : "";
   const app::Measurement measurement = bench.measurement();
+  const std::vector<app::NamedLabel> more_labels = options.more_labels();
   app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                 options.measures() ? &measurement : nullptr,
-                                options.labels(),
+                                options.labels(more_labels),
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};

@@ -10,16 +10,24 @@ struct Measurement;
 /// What a laboratory calls its device and its work; null for what was not given. UTF-8 of any
 /// length: the text of a report shows the first kLabelShown characters in one line, with what is
 /// not printable replaced.
+/// A label beyond those that every instrument takes, such as what a certificate names.
+struct NamedLabel {
+  const char* key;    ///< In results.json.
+  const char* name;   ///< In text and page.
+  const char* words;  ///< As given.
+};
+
 struct Labels {
   const char* device = nullptr;
   const char* serial = nullptr;
   const char* operated_by = nullptr;
   const char* date = nullptr;
   const char* note = nullptr;
+  Span<const NamedLabel> more = {};
 
   constexpr bool any() const noexcept {
     return device != nullptr || serial != nullptr || operated_by != nullptr || date != nullptr ||
-           note != nullptr;
+           note != nullptr || !more.empty();
   }
 };
 

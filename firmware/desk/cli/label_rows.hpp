@@ -1,0 +1,46 @@
+// What a certificate names beyond the labels of every instrument: a row each.
+#pragma once
+
+#include <cstddef>
+
+namespace emax::desk {
+
+/// A label as option, in results.json and in what is to be read.
+struct LabelRow {
+  const char* option;
+  const char* key;
+  const char* name;
+  const char* expectation;
+  const char* help;  ///< Lines of at most 55 characters.
+};
+
+enum class CertificateLabel : std::size_t {
+  kNumber,
+  kLaboratory,
+  kCustomer,
+  kMaker,
+  kModel,
+  kReference,
+  kConditions,
+  kProcedure,
+};
+
+/// In the order of `CertificateLabel`.
+inline constexpr LabelRow kLabelRows[] = {
+    {"certificate-number", "certificate_number", "Certificate number", "a number or a name",
+     "makes the page a certificate of this number"},
+    {"laboratory", "laboratory", "Laboratory", "a name and an address",
+     "name and address of who calibrates"},
+    {"customer", "customer", "Customer", "a name and an address", "for whom, name and address"},
+    {"maker", "maker", "Manufacturer", "a name", "who has made the device"},
+    {"model-name", "model_name", "Model", "a name", "the maker's name of its type"},
+    {"reference-id", "reference_id", "Reference sensor", "a name",
+     "the reference sensor and its certificate, to which\n"
+     "the results are traceable"},
+    {"conditions", "conditions", "Conditions", "a text",
+     "temperature, humidity, mounting and torque"},
+    {"procedure", "procedure", "Procedure", "a text", "of the laboratory, such as its number"},
+};
+inline constexpr std::size_t kLabelRowCount = sizeof kLabelRows / sizeof kLabelRows[0];
+
+}  // namespace emax::desk
