@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "emax/app/report/report_context.hpp"
+
 namespace emax::desk {
 
 /// A label as option, in results.json and in what is to be read.
@@ -17,6 +19,7 @@ struct LabelRow {
 enum class CertificateLabel : std::size_t {
   kNumber,
   kLaboratory,
+  kCountry,
   kCustomer,
   kMaker,
   kModel,
@@ -31,6 +34,8 @@ inline constexpr LabelRow kLabelRows[] = {
      "makes the page a certificate of this number"},
     {"laboratory", "laboratory", "Laboratory", "a name and an address",
      "name and address of who calibrates"},
+    {"country", "country", "Country", "two capital letters",
+     "of the laboratory, two letters of ISO 3166, as DE"},
     {"customer", "customer", "Customer", "a name and an address", "for whom, name and address"},
     {"maker", "maker", "Manufacturer", "a name", "who has made the device"},
     {"model-name", "model_name", "Model", "a name", "the maker's name of its type"},
@@ -42,5 +47,8 @@ inline constexpr LabelRow kLabelRows[] = {
     {"procedure", "procedure", "Procedure", "a text", "of the laboratory, such as its number"},
 };
 inline constexpr std::size_t kLabelRowCount = sizeof kLabelRows / sizeof kLabelRows[0];
+
+/// @returns What is given for a row; null if nothing is.
+const char* label_of(const app::Labels& labels, CertificateLabel label) noexcept;
 
 }  // namespace emax::desk

@@ -471,7 +471,14 @@ std::vector<Option> output_options(ReportOptions& options) {
                 "of each by gnuplot and its script, pictures.gp; DIR\n"
                 "is made if missing, and files of an earlier run are\n"
                 "replaced",
-                options.out_directory);
+                options.out_directory)
+      .add_text("dcc", "FILE", "the name of a file",
+                "also a Digital Calibration Certificate, XML by PTB's\n"
+                "schema 3.2.1, not signed; takes the labels --device,\n"
+                "--serial, --operator, --date (YYYY-MM-DD),\n"
+                "--certificate-number, --laboratory, --country and\n"
+                "--customer",
+                options.dcc_path);
   return builder.options();
 }
 

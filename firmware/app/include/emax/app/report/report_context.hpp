@@ -3,13 +3,12 @@
 
 #include <cstdint>
 
+#include "emax/base/span.hpp"
+
 namespace emax::app {
 
 struct Measurement;
 
-/// What a laboratory calls its device and its work; null for what was not given. UTF-8 of any
-/// length: the text of a report shows the first kLabelShown characters in one line, with what is
-/// not printable replaced.
 /// A label beyond those that every instrument takes, such as what a certificate names.
 struct NamedLabel {
   const char* key;    ///< In results.json.
@@ -17,6 +16,9 @@ struct NamedLabel {
   const char* words;  ///< As given.
 };
 
+/// What a laboratory calls its device and its work; null for what was not given. UTF-8 of any
+/// length: the text of a report shows the first kLabelShown characters in one line, with what is
+/// not printable replaced.
 struct Labels {
   const char* device = nullptr;
   const char* serial = nullptr;
