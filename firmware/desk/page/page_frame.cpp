@@ -101,7 +101,9 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   #ranking svg { max-height: 230mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
   figure, tr, li, .headline, .warning, .note, .sign { break-inside: avoid; }
-  h2, h2 + p, .wide + .about, summary { break-after: avoid; }
+  summary { break-after: avoid; }
+  /* What is said of a picture stays with it. */
+  #error-system, #energy, #trend { break-inside: avoid; }
   /* What is folded on a screen is printed all the same. */
   details::details-content { content-visibility: visible; block-size: auto; }
   summary { list-style: none; }
