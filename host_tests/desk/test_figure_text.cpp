@@ -27,8 +27,31 @@ TEST(NumberText, HasFourDigitsWithoutUncertainty) {
 }
 
 TEST(NumberText, OfLessThanItsUncertaintyStillIsANumber) {
-  EXPECT_EQ(number_text(0.002, 0.5, kPercent), "0.002");
+  EXPECT_EQ(number_text(0.002, 0.5, kPercent), "0.0020");
   EXPECT_EQ(number_text(0.02, 0.05, kPercent), "0.020");
+  EXPECT_EQ(number_text(0.0001385, 0.015, kPercent), "0.00014");
+}
+
+TEST(RangeText, IsRoundedOutwardsToTwoDigitsOfTheFarEnd) {
+  EXPECT_EQ(range_text(0.0000112, 0.02391), "0 to 0.024");
+  EXPECT_EQ(range_text(0.01199, 0.0200001), "0.011 to 0.021");
+  EXPECT_EQ(range_text(0.5, 1.5), "0.5 to 1.5");
+  EXPECT_EQ(range_text(3.0, 250.0), "0 to 2.5e+02");
+  EXPECT_EQ(range_text(2.14e-11, 3.01e-10), "2.0e-11 to 3.1e-10");
+}
+
+TEST(IntervalText, StandsInThePlaceOfUWhereTheFigureIsAtItsEnd) {
+  Figure figure;
+  figure.exists = figure.has_interval = figure.has_uncertainty = true;
+  figure.value = 0.0001385;
+  figure.expanded = 0.0147;
+  figure.low = 0.0000112;
+  figure.high = 0.02391;
+  figure.is_one_sided = true;
+  EXPECT_EQ(value_text(figure, kPercent), "0.0001385");
+  EXPECT_EQ(interval_text(figure, kPercent), "0 to 0.024");
+  figure.is_one_sided = false;
+  EXPECT_EQ(value_text(figure, kPercent), "0.00014");
 }
 
 TEST(BoundText, IsNeverBelowTheBound) {

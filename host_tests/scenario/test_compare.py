@@ -269,7 +269,10 @@ class CompareInBand(Comparing, ProgramTest):
                  result(matched=2.0, device="other")]
         for by in ["matched", "band", "energy"]:
             for i, each in enumerate(files):
-                each["energy"]["E"], each["band"]["rms_percent"] = (1 + i) * 1e-3, 5.0 + i
+                energy = (1 + i) * 1e-3
+                each["energy"]["E"] = energy
+                each["uncertainty"] |= {"interval": [energy - 2e-5, energy + 2e-5], "shortest": [energy - 2e-5, energy + 2e-5]}
+                each["band"] |= figure(5.0 + i, 0.01, 0.002 * 4)
             found = self.compare(*files, by=by)
             self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 3), ("2.json", 2, 3)])
             self.assertEqual([(p["compared"], p["told_apart"], p["proven"]) for p in found["pairs"]],
@@ -326,7 +329,7 @@ class CompareInBand(Comparing, ProgramTest):
         self.assertEqual(self.ranks(found), [("0.json", 1, 1), ("1.json", 2, 2), ("2.json", 3, 3)])
         text = self.succeed("compare", "0.json", "1.json", "2.json")
         self.assertEqual(text.count("WARNING"), 1)
-        self.assertRegex(text, "WARNING: Warned of by the report of A and C: u is .doubtful\\.")
+        self.assertRegex(text, "WARNING: The report of A and C warns: u is .doubtful\\.")
         self.assertNotIn("\x1b", text)
 
     def test_other_warnings_are_no_marks(self):
@@ -347,6 +350,69 @@ class CompareInBand(Comparing, ProgramTest):
         found = self.compare(result(matched=1.0, u_band=None), result(matched=2.0), by="matched")
         self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2)])
         self.assertIn("CANNOT BE RANKED", self.succeed("compare", "0.json", "1.json"))
+
+
+def one_sided(percent, high, low=0.0) -> dict:
+    """What a matched figure at the low end of its interval has: a half-normal distribution above it."""
+    u = (high - percent) / 1.96 * math.sqrt(1 - 2 / math.pi)
+    return {"rms_percent": percent, "u_percent": u, "U_percent": 2 * u, "shortest_percent": [low, high],
+            "interval_percent": [percent + 0.016 * high, 1.14 * high]}
+
+
+class CompareOnOneSide(Comparing, ProgramTest):
+    """Figures that their delay leaves at one end of their intervals."""
+
+    def pair(self, *others) -> dict:
+        files = [result(matched=1.0) for _ in others]
+        for file, other in zip(files, others):
+            file["band"]["matched"] |= other
+        return self.compare(*files, by="matched")["pairs"][0]
+
+    def test_told_apart_by_intervals(self):
+        both_sides = figure(0.020, 0.0001, 1.0)
+        # Zou and Donner: 0.0199 - sqrt(0.0239^2 + 0.0002^2) and the like.
+        for first, second, low, apart in [
+            (one_sided(0.0001, 0.024), both_sides, 0.0199 - math.hypot(0.0239, 0.0002), False),
+            (one_sided(0.0001, 0.018), both_sides, 0.0199 - math.hypot(0.0179, 0.0002), True),
+            (both_sides, one_sided(0.0203, 0.05, 0.0203), 0.0003 - 0.0002, True),
+            (both_sides, one_sided(0.0201, 0.05, 0.0201), 0.0001 - 0.0002, False),
+            (one_sided(0.0001, 0.024), one_sided(0.023, 0.05, 0.023), 0.0229 - 0.0239, False),
+        ]:
+            with self.subTest(first=first["rms_percent"], second=second["rms_percent"]):
+                pair = self.pair(first, second)
+                self.assertEqual(pair["told_apart"], apart)
+                self.assertAlmostEqual(pair["interval"][0], low, delta=1e-12)
+
+    def test_small_probabilities_tell_no_more_apart_than_u(self):
+        files = [result(matched=1.0), result(matched=1.0)]
+        files[0]["band"]["matched"] |= one_sided(0.0001, 0.010)
+        files[1]["band"]["matched"] |= figure(0.0115, 0.0001, 1.0)
+        files[0]["band"]["matched"]["U_percent"] = 0.012
+        self.assertTrue(self.compare(*files, by="matched")["pairs"][0]["told_apart"])
+        for file in files:
+            file["uncertainty"]["probability"] = 0.8
+        self.assertFalse(self.compare(*files, by="matched")["pairs"][0]["told_apart"])
+
+    def test_words_page_and_picture(self):
+        files = [result(matched=1.0, device="A"), result(matched=1.0, device="B")]
+        files[0]["band"]["matched"] |= one_sided(0.0001385, 0.0239)
+        files[1]["band"]["matched"] |= figure(0.01991, 0.0001, 1.0)
+        for i, file in enumerate(files):
+            self.save(f"{i}.json", file)
+        text = self.succeed("compare", "0.json", "1.json", "--out", "out")
+        self.assertRegex(text, r"\n  1-2   A +0\.0001385 .* - +0 to 0\.024 +-\n")
+        self.assertIn("its interval from -0.0040 to 0.020 % of S a", " ".join(text.split()))
+        self.assertIn("The delay taken out stays that of the estimate", " ".join(text.split()))
+        page = (self.directory / "out/comparison.html").read_text(encoding="utf-8")
+        self.assertIn("<dt>Least error found (interval)</dt><dd>0.0001385 (0 to 0.024) % of S a</dd>", page)
+        headline = page[page.index('<dl class="headline">'):page.index("</dl>")]
+        self.assertNotRegex(headline, "[\u2212-]0|0\\.0+[ <]")
+        # Value, ends of the bar, bound, and row; the lower end no lower than the axis.
+        script = (self.directory / "out/comparison.gp").read_text(encoding="utf-8")
+        value, low, high = map(float, re.search(r"END\n(\S+) (\S+) (\S+) ", script).groups())
+        axis = [float(end) for end in re.search(r"xrange \[(\S+):(\S+)\]", script).groups()]
+        self.assertEqual((value, high), (0.0001385, 0.0239))
+        self.assertTrue(axis[0] <= low < value and high < axis[1])
 
 
 class CompareOutput(Comparing, ProgramTest):
@@ -417,7 +483,7 @@ class CompareOutput(Comparing, ProgramTest):
                     self.assertRegex(row[: head.index(title) + len(title)], f" {number}$")
             # A name goes on below, to its end.
             table = text.split("  rank ")[1].split("\n\n")[0]
-            self.assertRegex(table, r"\n +(a long |long |name |a )+17\n")
+            self.assertRegex(table, r"\n +(a long |long |name |a )+17[ \n]")
             self.assertNotIn("...a", table)
 
     def test_bound_in_fewer_digits_is_a_bound(self):
@@ -564,7 +630,7 @@ class ComparePage(Comparing, ProgramTest):
         self.assertIn("<svg", page)
         self.assertNotIn("SIMULATION", page)
         page = self.page(result(matched=1.196, device="A"), result(matched=1.197, device="B"))
-        self.assertIn("<dt>Smallest error: the results do not say which of</dt><dd>A and B</dd>", page)
+        self.assertIn("<dt>Smallest error: the results do not say which one's</dt><dd>A or B</dd>", page)
         self.assertIn("<strong>CANNOT BE TOLD APART</strong>", page)
 
     def test_powers_of_ten_as_in_print(self):
@@ -739,6 +805,55 @@ class CompareRefusals(Comparing, ProgramTest):
                 inner[name] = -1.0
                 self.save("b", other)
                 self.refuse(["compare", "a", "b"], f"emax: b: {'.'.join(place)}.{name} is below 0; expected")
+
+    def test_what_cannot_be_is_refused(self):
+        self.save("a", result())
+        matched = ("band", "matched")
+        for place, name, value, words in [
+            (matched, "bound_percent", 0.9, "is below the figure"), (("energy",), "bound", 4.9e-3, "is below the figure"),
+            (matched, "interval_percent", [3, 2], "ends below its beginning"),
+            (("uncertainty",), "interval", [6e-3, 5e-3], "ends below its beginning"),
+            (matched, "rms_percent", 1e308, "is beyond 1e150"), (("model",), "S", 0, "is 0"), (("energy",), "a", 0, "is 0"),
+            (("energy",), "T", 0, "is 0"), (("uncertainty",), "probability", 0, "is 0"),
+            (("uncertainty",), "probability", 1, "is 1 or more"), (("filter",), "order", 0, "is 0"),
+        ]:
+            with self.subTest(place=place, name=name, value=value):
+                other = result()
+                inner = other
+                for part in place:
+                    inner = inner[part]
+                inner[name] = value
+                self.save("b", other)
+                self.refuse(["compare", "a", "b"], f"emax: b: {'.'.join(place)}.{name} {words}; expected")
+
+    def test_times_that_differ_in_the_last_digit(self):
+        self.save("a", result())
+        other = result()
+        other["energy"]["T"] = 0.0020000000000000005
+        self.save("b", other)
+        self.refuse(["compare", "a", "b"], "b: T is 0.0020000000000000005 s, and 0.002")
+
+    def test_devices_of_one_name_have_their_files_beside_it(self):
+        self.compare(result(5e-3, device="a"), result(6e-3, device="a"), result(7e-3, device="b"))
+        text = self.succeed("compare", "0.json", "1.json", "2.json", *ENERGY)
+        self.assertRegex(text, r"\n  1     a \(0.json\) +")
+        self.assertIn("a (1.json) and b: told apart", text)
+
+    def test_in_band_energies_of_several_delays(self):
+        files = [result(matched=1.0), result(matched=2.0)]
+        for file, mode in zip(files, ["auto", "none"]):
+            file["energy"] |= {"criterion": "band", "delay_mode": mode}
+        self.compare(*files, by="matched")
+        text = self.succeed("compare", "0.json", "1.json")
+        self.assertIn("in-band error, for some with a delay taken out and for some without", text)
+        self.refuse(["compare", "0.json", "1.json", *ENERGY], "the delay taken out is none, and auto in")
+
+    def test_time_that_a_warning_asks_for(self):
+        files = [result(matched=1.0, device="A"), result(matched=3.0)]
+        files[0]["warnings"] = [{"about": "band", "text": "T is short; give the settling time", "least_time_s": 0.0140021}]
+        self.compare(*files, by="matched")
+        self.assertIn("The report of A warns: T is short; give the settling time, 14.1 ms.",
+                      self.succeed("compare", "0.json", "1.json"))
 
     def test_results_without_figures_of_the_band(self):
         self.save("a.json", result())

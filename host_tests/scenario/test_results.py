@@ -212,6 +212,106 @@ class FigureValues(ProgramTest):
                 self.assertEqual(figure["U_percent"], 2 * figure["u_percent"])
                 self.assertEqual(figure["disagreements"], 0)
 
+    def test_uncertainty_of_the_papers_percent_is_without_that_of_the_scale(self):
+        # Of 100 sqrt(E/T)/(S a) with S the sensor's own: d ln(sqrt(E)/S) = dE/(2 E) - dS/S, by quadrature. The row has
+        # two digits.
+        options = ["--model", PAPER + ",0.003,6,0.0004", "--trials", "20000", "--trend", "none"]
+        sensor = reference.Accelerometer(1.037, 4073.0, 0.3182)
+        found = self.json_of(*options)
+        slopes = derivatives(reference.System(sensor, 10, 1000.0, 1.037), found["energy"]["switch_times"],
+                             {"S": 1e-4, "f0": 1.0, "beta": 1e-4})
+        energy = found["energy"]["E"]
+        relative = [slope / (2 * energy) for slope in slopes]
+        relative[0] -= 1 / 1.037
+        expected = 2 * 148.72 * math.hypot(*(slope * u for slope, u in zip(relative, U_PAPER)))
+        row = r"The paper's figure, sqrt\(E/T\) +\S+ +(\S+) "
+        told = float(re.search(row, self.succeed("report", *options)).group(1))
+        self.assertAlmostEqual(told, expected, delta=0.005 + 0.03 * expected)
+        # A gain that follows S leaves of it a factor.
+        only_s = ["--model", PAPER + ",0.003,0,0", "--gain", "track", *options[2:]]
+        for more in [[], ["--distribution", "normal"], ["--threads", "1"]]:
+            self.assertEqual(re.search(row, self.succeed("report", *only_s, *more)).group(1), "0")
+
+    def test_figure_at_the_end_of_its_interval(self):
+        # With the delay of the estimate taken out a trial has the error of a delay that is left: x(t - dt) instead of
+        # x(t), which is as large as the error with the whole delay times |dt| over it. So the figure is that of 0.7 %
+        # of it and less, and its 95 % end at 1.96 u of the delay beta/(pi f0).
+        options = ["--model", "1,60000,0.7,0.003,300,0.01", "--limit", "1", "--trials", "20000", "--trend", "none"]
+        band = self.json_of(*options)["band"]
+        matched = band["matched"]
+        end = 1.96 * band["rms_percent"] * math.hypot(0.01 / 0.7, 300 / 60000)
+        self.assertAlmostEqual(matched["shortest_percent"][1], end, delta=0.03 * end)
+        self.assertLess(matched["rms_percent"], matched["interval_percent"][0], "what made this necessary")
+        text = self.succeed("report", *options, "--out", "out")
+        row = re.search(r"  In band, constant delay taken out +(\S+) +(\S+) to (\S+) +0\.0001418\n", text)
+        self.assertAlmostEqual(float(row.group(1)), matched["rms_percent"], delta=1e-7)
+        self.assertEqual(float(row.group(2)), 0.0)
+        self.assertAlmostEqual(float(row.group(3)), end, delta=0.03 * end + 0.001)
+        self.assertIn("+-U is no measure", text)
+        self.assertIn("the same in all trials", text, "the delay stays at the estimate")
+        page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
+        self.assertRegex(page, r"0\.0001385 % of S.a; 95 % interval 0 to 0\.02\d %")
+        for words in [text, page]:
+            self.assertNotRegex(words, r"[ >]0\.0+[ <]")
+
+    def test_short_time_in_band(self):
+        # Order 10 at 300 Hz rings 1000/300 times as long as at 1 kHz, where the README says 4.5084 ms with the delay out.
+        found = self.json_of("--model", PAPER, "--cutoff", "300", "--trend", "none")
+        self.assertAlmostEqual(found["band"]["settling_time_s"], 0.014, delta=0.0015)
+        self.assertEqual([w["about"] for w in found["warnings"]], ["band"])
+        self.assertEqual(found["warnings"][0]["least_time_s"], found["band"]["settling_time_s"])
+        text = self.succeed("report", "--model", PAPER, "--cutoff", "300", "--trend", "none", "--out", "out")
+        self.assertIn("There is a warning below, on: band.", text)
+        self.assertRegex(text[text.index("IN-BAND"):], r"WARNING: T is much shorter [^:]*: give a T of 14\.\d ms or more")
+        page = (self.directory / "out" / "report.html").read_text(encoding="utf-8")
+        self.assertRegex(page, r"give at least the settling time, 14(\.\d)? ms")
+        # Long enough, and none.
+        self.assertEqual(self.json_of("--model", PAPER, "--cutoff", "300", "--time", "0.015", "--trend", "none")["warnings"], [])
+
+    def test_delay_none_leads_with_the_delay(self):
+        text = self.succeed("report", "--model", PAPER, "--trend", "none", "--reference-delay", "none", "--out", "out")
+        self.assertLess(text.index("In band, with its delay"), text.index("In band, constant delay taken out"))
+        page = (self.directory / "out" / "report.html").read_text(encoding="utf-8")
+        self.assertRegex(page, r'class="first"><dt>Worst in-band error, with its delay')
+
+    def test_one_uncertainty_of_the_in_band_error(self):
+        for delay in ["auto", "none"]:
+            found = self.json_of("--model", PAPER + ",0.003,6,0.0004", "--trials", "5000", "--trend", "none", "--criterion",
+                                 "band", "--reference-delay", delay)
+            figure = found["band"] if delay == "none" else found["band"]["matched"]
+            self.assertEqual(found["uncertainty"]["U"], figure["U"])
+            self.assertEqual(found["uncertainty"]["interval"], figure["interval"])
+
+    def test_error_that_rounding_hides_leaves_those_in_band(self):
+        # As good as the filter, a Butterworth one of order 2 with beta = 0.5^0.5: 1e-8 of its output is left.
+        options = ["report", "--model", "0.1,1000,0.7071068", "--order", "2", "--trend", "none", "--time"]
+        done = self.run_program(*options, "0.02", "--json")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr.decode(), r"^emax: --model: .* sensor and filter are nearly the same; .*; so E, trials and "
+                                               r"trend are those of --criterion band\n$")
+        found = json.loads(done.stdout)
+        self.assertEqual((found["energy"]["criterion"], found["energy"]["delay_mode"]), ("band", "none"))
+        # At f0 = fc K is -j/(2 beta), |K - 1| = 1.5^0.5, and the filter lets half of the power through: a sine of a leaves
+        # an rms of 1.5^0.5/2 of a, and the worst signal has more.
+        self.assertGreater(found["band"]["rms_percent"], 61.2)
+        text = self.run_program(*options, "0.02").stdout.decode()
+        self.assertIn("E of the criterion asked for is hidden by rounding: below it is that of the in-band error.", text)
+        # Not where T is at fault, too: the words say so.
+        self.refuse([*options, "1e-9"], "the time is too short, or")
+
+    def test_refusal_of_a_time_too_short(self):
+        text = self.succeed("report", "--model", "1,4073,0.3182", "--time", "1e-5", "--trend", "none")
+        self.assertIn("T is too short beside the settling time for so small an error to develop; take a longer one.", text)
+        self.assertNotIn("order,", text[text.index("THE FIGURES"):text.index("WHAT WAS PUT IN")])
+
+    def test_certify_names_what_its_numbers_are(self):
+        quick = ["certify", "--model", "1,4073,0.3182", "--rounds", "1"]
+        text = self.succeed(*quick, "--criterion", "difference")
+        self.assertIn("sqrt(E/T)   ", text)
+        self.assertNotIn("RMS error", text)
+        text = self.succeed(*quick, "--criterion", "band", "--order", "15", "--reference-delay", "none")
+        self.assertRegex(" ".join(text.split()), r"give at least the settling time, 6\.\d\d? ms")
+
     def test_delays_are_told(self):
         quick = ["--model", PAPER, "--trend", "none"]
         of_sensor = 0.3182 / (math.pi * 4073.0)
@@ -287,7 +387,7 @@ class FigureWords(ProgramTest):
         self.succeed("report", "--model", PAPER + ",0.003,6,0.0004", "--trials", "1000", "--trend", "none", "--criterion", "band",
                      "--out", "out")
         page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
-        for words in ["in-band error with the sensor's delay of 24.868", "with G at the estimate of S", "k of the in-band error",
+        for words in ["in-band error with the sensor's delay of 24.868", "k of the in-band error",
                       "what the filter passes of the sensor's response less that of an ideal sensor"]:
             self.assertIn(words, page)
         for words in ["k = ka", "less that of the reference filter", "sensor minus filter", "The paper's E"]:

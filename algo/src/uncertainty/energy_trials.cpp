@@ -1,6 +1,7 @@
 // Draws a device, and asks what its largest energy is.
 #include "emax/uncertainty/energy_trials.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "emax/base/elementary.hpp"
@@ -16,10 +17,15 @@ constexpr std::size_t kWorkOfRefinement = 32;
 /// The share of the draws in a piece. To cut it costs some 500 refinements, as much as a part of
 /// 2e5 trials in it would.
 constexpr double kWorthCutting = 1.0 / 256.0;
-/// The most refinements times switches that the first pieces, and all of them, are worth: half a
-/// second on a PC.
-constexpr std::size_t kMostWorkOfFirst = 100000;
-constexpr std::size_t kMostWorkOfPieces = 250000;
+/// The most refinements times switches that the first pieces, and all of them, are worth at least,
+/// whatever they save: half a second on a PC.
+constexpr double kMostWorkOfFirst = 1e5;
+constexpr double kMostWorkOfPieces = 2.5e5;
+/// The parts of what they save that they are worth.
+constexpr double kWorthOfFirst = 0.1;
+constexpr double kWorthOfPieces = 0.25;
+/// So many trials show how many are refined.
+constexpr std::uint32_t kTried = 256;
 /// From this part of the standard deviation on a polynomial of the whole ranges is worth a cut.
 constexpr double kRough = 1e-4;
 
@@ -73,6 +79,8 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   }
   pieces_used_ = 0;
   work_of_pieces_ = 0;
+  expected_trials_ = settings.expected_trials;
+  work_saved_ = 0.0;
   rough_ = 0;
   pieces_begun_ = 0;
   pieces_ready_ = 0;
@@ -88,22 +96,42 @@ void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexc
     branches_.prepare(draws_, search, workspace);
     return;
   }
-  if (branches_.is_accurate() || branches_.notes().degree == 0 || !is_worth_pieces()) {
-    pieces_ = Span<TrialPiece>();
-    return;
-  }
   if (pieces_used_ == 0) {
+    if (branches_.is_accurate() || branches_.notes().degree == 0 || !is_worth_pieces()) {
+      pieces_ = Span<TrialPiece>();
+      return;
+    }
     begin_pieces();
   }
   prepare_piece(workspace);
 }
 
-bool EnergyTrials::is_worth_pieces() const noexcept {
+/// Also says what pieces save.
+bool EnergyTrials::is_worth_pieces() noexcept {
   const bool is_predicted = branches_.is_predicted();
   const bool is_rough = branches_.rough_part() > kRough;
+  if (is_predicted && !is_rough) {
+    return false;
+  }
+  work_saved_ = is_predicted ? 0.0
+                             : refined_part() * static_cast<double>(expected_trials_) *
+                                   static_cast<double>(branches_.most_switches() + 1);
   const std::size_t work = kFirstPieces * branches_.work_of_fit(EnergyBranches::kFirstDegree) /
                            branches_.notes().branches;
-  return (!is_predicted || is_rough) && work <= kMostWorkOfFirst;
+  return static_cast<double>(work) <= std::max(kMostWorkOfFirst, kWorthOfFirst * work_saved_);
+}
+
+/// The part of the trials that is refined without pieces.
+double EnergyTrials::refined_part() noexcept {
+  DeviceDraws draws = draws_;
+  std::uint32_t refined = 0;
+  for (std::uint32_t trial = 0; trial < kTried; ++trial) {
+    if (draws.draw(trial)) {
+      branches_.begin(draws.place());
+      refined += branches_.done() ? 0U : 1U;
+    }
+  }
+  return static_cast<double>(refined) / static_cast<double>(kTried);
 }
 
 /// Parts of equal size along f0 or damping.
@@ -141,7 +169,8 @@ void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
 
 bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {
   if (piece.branches.is_accurate() || pieces_used_ + 2 > pieces_.size() ||
-      work_of_pieces_ > kMostWorkOfPieces) {
+      static_cast<double>(work_of_pieces_) >
+          std::max(kMostWorkOfPieces, kWorthOfPieces * work_saved_)) {
     return false;
   }
   double share = 1.0;

@@ -60,6 +60,7 @@ emax_add_web_module(emax_${EMAX_BOARD_NAME}_desk
     ${desk}/files/result_file.cpp
     ${desk}/files/rounding.cpp
     ${desk}/files/utf8_text.cpp
+    ${desk}/report/warning_words.cpp
     ${import})
 target_include_directories(emax_${EMAX_BOARD_NAME}_desk PRIVATE ${PROJECT_SOURCE_DIR}/firmware)
 target_link_libraries(emax_${EMAX_BOARD_NAME}_desk PRIVATE emax_app)

@@ -39,6 +39,7 @@
 #include "desk/files/text_file.hpp"
 #include "desk/report/failure_words.hpp"
 #include "desk/report/fit_causes.hpp"
+#include "desk/report/warning_words.hpp"
 
 namespace emax::desk {
 
@@ -380,7 +381,12 @@ void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& o
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
       out.text(separator).text("{\"about\": \"").text(about(warning));
-      out.text("\", \"text\": \"").text(words_of(warning)).text("\"}");
+      out.text("\", \"text\": \"").text(words_of(warning)).text("\"");
+      const double least_s = least_time_s(warning, evaluation);
+      if (least_s > 0.0) {
+        out.text(", \"least_time_s\": ").exact(least_s);
+      }
+      out.text("}");
       separator = ", ";
     }
   }
@@ -413,7 +419,7 @@ void write_warnings(const CertifyResult& result, app::TextWriter& out) {
   const app::EvaluationResults& evaluation = *result.evaluation;
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
-      write_warning(words_of(warning), out);
+      write_warning(sentence_of(words_of(warning), least_time_s(warning, evaluation)), out);
     }
   }
   if (!result.cause.empty()) {
@@ -487,7 +493,8 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.text(" V^2 s for every such signal");
   out.text(proven.box != nullptr ? ", and every device in the box" : "");
   out.text("\nGap         ").fixed(100.0 * result.gap(), 3);
-  out.text(" % of the energy reached\nRMS error   ");
+  const bool is_error = proven.model->criterion() != Criterion::kEnergyDifference;
+  out.text(" % of the energy reached\n").text(is_error ? "RMS error   " : "sqrt(E/T)   ");
   out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
   out.general(rounded_up(std::sqrt(result.bound_v2s() / duration_s), 4), 5).text(" V\n");
   if (proven.model->delay_s() > 0.0) {

@@ -43,9 +43,9 @@ constexpr WordCondition kWords[] = {
     {&Result::gain_mode, "gain", "--gain"},
 };
 
-std::string in_digits(double value) {
+std::string in_digits(double value, int digits = 10) {
   StringSink sink;
-  app::TextWriter(sink).general(value, 10);
+  app::TextWriter(sink).general(value, digits);
   return sink.text();
 }
 
@@ -60,9 +60,15 @@ Problem differ(const Result& result, const Result& first, const char* name,
 Problem check(const NumberCondition& number, const Result& result, const Result& first) {
   const double value = result.*number.member;
   const double first_value = first.*number.member;
-  return value == first_value ? Problem{}
-                              : differ(result, first, number.name, in_digits(value) + number.unit,
-                                       in_digits(first_value) + number.unit, number.option);
+  if (value == first_value) {
+    return {};
+  }
+  constexpr int kDigits = 10;
+  constexpr int kAllDigits = 17;
+  const bool is_hidden = in_digits(value, kDigits) == in_digits(first_value, kDigits);
+  const int digits = is_hidden ? kAllDigits : kDigits;
+  return differ(result, first, number.name, in_digits(value, digits) + number.unit,
+                in_digits(first_value, digits) + number.unit, number.option);
 }
 
 std::string words_of(const Delay& delay) {
@@ -149,6 +155,36 @@ Problem check_all(const std::vector<Result>& results, FigureKind asked, FigureKi
   return {};
 }
 
+// How far a figure may be off to each side.
+struct Reach {
+  double down = 0.0;
+  double up = 0.0;
+};
+
+Reach reach_of(const Result& result, FigureKind by) noexcept {
+  const Figure& figure = result.figure(by);
+  if (!figure.is_one_sided) {
+    return {figure.expanded, figure.expanded};
+  }
+  constexpr double kUsual = 0.95;
+  const Reach reach = {figure.value - figure.low, figure.high - figure.value};
+  // An interval of less than what k = 2 stands for tells nothing apart that U does not.
+  return result.probability < kUsual
+             ? Reach{std::max(reach.down, figure.expanded), std::max(reach.up, figure.expanded)}
+             : reach;
+}
+
+double together(double one, double other) noexcept { return sqrt(one * one + other * other); }
+
+// Two devices of one name are told apart by their files.
+void mark_namesakes(std::vector<Result>& results) {
+  for (Result& result : results) {
+    result.has_namesake = std::any_of(results.begin(), results.end(), [&](const Result& other) {
+      return &other != &result && other.device == result.device && other.serial == result.serial;
+    });
+  }
+}
+
 void rank_all(Comparison& comparison) {
   const std::vector<Result>& results = comparison.results;
   const std::size_t count = results.size();
@@ -195,7 +231,12 @@ Pair compare(const Result& first, const Result& second, FigureKind by) noexcept 
   pair.has_uncertainty = one.has_uncertainty && other.has_uncertainty;
   if (pair.has_uncertainty) {
     pair.expanded = kCoverageFactor * sqrt(one.u * one.u + other.u * other.u);
-    pair.told_apart = may_differ && abs(pair.difference) > pair.expanded + pair.epsilon;
+    pair.is_one_sided = one.is_one_sided || other.is_one_sided;
+    const Reach of_one = reach_of(first, by);
+    const Reach of_other = reach_of(second, by);
+    pair.low = pair.difference - together(of_one.up, of_other.down);
+    pair.high = pair.difference + together(of_one.down, of_other.up);
+    pair.told_apart = may_differ && pair.low > pair.epsilon;
   }
   pair.proven =
       may_differ && one.has_bound && one.bound + one.epsilon < other.value - other.epsilon;
@@ -208,6 +249,7 @@ Problem compare_all(std::vector<Result> results, FigureKind asked, Comparison& c
   if (Problem problem = check_all(results, asked, by)) {
     return problem;
   }
+  mark_namesakes(results);
   std::stable_sort(results.begin(), results.end(), [by](const Result& one, const Result& other) {
     return one.figure(by).value < other.figure(by).value;
   });

@@ -15,6 +15,11 @@ struct Pair {
   /// U of the difference; 0 unless `has_uncertainty`. The devices' uncertainties count as
   /// independent: what they share, such as the reference sensor, would only make it smaller.
   double expanded = 0.0;
+  /// The interval of the difference, as far as that of each figure reaches to that side: +-U, but
+  /// for figures at one end of their intervals. With `has_uncertainty`.
+  double low = 0.0;
+  double high = 0.0;
+  bool is_one_sided = false;  ///< One of the figures is.
   /// How far the difference can be off beside that, by the way the figures are computed.
   double epsilon = 0.0;
   bool has_uncertainty = false;  ///< Both devices have one.
@@ -24,7 +29,7 @@ struct Pair {
   /// The points of one of the two do not determine its damping: it has a place, but the other may
   /// be better or worse.
   bool has_open_damping = false;
-  bool told_apart = false;  ///< Compared, and the difference is beyond its uncertainty.
+  bool told_apart = false;  ///< Compared, and 0 is outside the interval of the difference.
   /// Able to be told apart, and even the first one's upper bound is below the second one's figure:
   /// true at the estimates for whatever signal.
   bool proven = false;
@@ -55,6 +60,11 @@ bool is_marked(const Result& result) noexcept;
 /// @returns The probability of the intervals that `comparison` has; 0 if it has none.
 double probability_of(const Comparison& comparison) noexcept;
 
+/// Compares two devices; the figure of the first is no more than that of the second.
+///
+/// How far the difference reaches to a side is the root of the sum of the squares of how far the
+/// figures do (Zou and Donner, Statistics in Medicine 27 (2008) 1693): for intervals of any shape,
+/// and +-U of the difference for symmetric ones.
 Pair compare(const Result& first, const Result& second, FigureKind by) noexcept;
 
 /// Compares devices that were measured under the same conditions: filter order, cut-off and gain,

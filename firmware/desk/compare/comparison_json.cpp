@@ -92,6 +92,11 @@ void write_pair(const Comparison& comparison, std::size_t index, JsonWriter& jso
   json.open(nullptr);
   json.number("difference", pair.difference);
   write_optional("U", pair.has_uncertainty, pair.expanded, json);
+  if (pair.has_uncertainty) {
+    json.pair("interval", pair.low, pair.high);
+  } else {
+    json.null("interval");
+  }
   json.number("epsilon", pair.epsilon);
   json.boolean("compared", pair.is_compared);
   json.boolean("told_apart", pair.told_apart);

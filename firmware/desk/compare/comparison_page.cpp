@@ -58,10 +58,21 @@ std::string figure_with_uncertainty(const Comparison& comparison, const Result& 
   const Figure& figure = comparison.figure(result);
   const FigureKind by = comparison.by;
   std::string text = value_text(figure, by);
-  if (figure.has_uncertainty) {
+  if (figure.is_one_sided) {
+    text += " (" + interval_text(figure, by) + ")";
+  } else if (figure.has_uncertainty) {
     text += " +- " + number_text(figure.expanded, figure.expanded, by);
   }
   return html_of_numbers(text) + html_of(figure_words(by).unit);
+}
+
+// What stands beside the figure.
+std::string words_of_range(const Comparison& comparison, const Result& result) {
+  const Figure& figure = comparison.figure(result);
+  if (figure.is_one_sided) {
+    return " (interval)";
+  }
+  return figure.has_uncertainty ? " (k = 2)" : "";
 }
 
 // Those that may be the best.
@@ -79,13 +90,20 @@ void append_headline(std::string& html, const Comparison& comparison) {
   const std::vector<const Result*> leaders = leaders_of(comparison);
   const bool is_alone = leaders.size() == 1;
   html += "<dl class=\"headline\">\n";
+  const bool is_difference =
+      comparison.by == FigureKind::kEnergy && comparison.results.front().criterion == "difference";
+  const std::string what = is_difference ? "energy difference" : "error";
   append_figure(html, " class=\"first\"",
-                is_alone ? "Smallest error" : "Smallest error: the results do not say which of",
-                quoted(list_of(leaders).c_str()));
-  append_figure(html, "", is_alone ? "Its error (k = 2)" : "Least error found (k = 2)",
-                figure_with_uncertainty(comparison, comparison.results.front()));
-  append_figure(html, "", "Largest error found (k = 2)",
-                figure_with_uncertainty(comparison, comparison.results.back()));
+                "Smallest " + what + (is_alone ? "" : ": the results do not say which one's"),
+                quoted(list_of(leaders, "or").c_str()));
+  const Result& least = comparison.results.front();
+  const Result& largest = comparison.results.back();
+  append_figure(
+      html, "",
+      (is_alone ? "Its " : "Least ") + what + " found" + words_of_range(comparison, least),
+      figure_with_uncertainty(comparison, least));
+  append_figure(html, "", "Largest " + what + " found" + words_of_range(comparison, largest),
+                figure_with_uncertainty(comparison, largest));
   html += "</dl>\n";
 }
 
@@ -136,9 +154,10 @@ void append_ranking(std::string& html, const Comparison& comparison, const std::
   } else {
     append_picture(html, svg,
                    {"Devices by rank with their errors",
-                    "Each device's largest error with its expanded uncertainty. Bars that overlap "
-                    "much belong to devices that share their ranks; at the estimates the "
-                    "triangle is above every signal of any shape."},
+                    "Each device's largest error with its expanded uncertainty, or its interval "
+                    "where it is at one end of that; a bar that ends at the left edge goes on to "
+                    "0. Bars that overlap much belong to devices that share their ranks; at the "
+                    "estimates the triangle is above every signal of any shape."},
                    1);
   }
   html += "</section>\n";

@@ -62,15 +62,23 @@ bool spans_decades(const Comparison& comparison, std::size_t rows) {
   return range.least > 0.0 && range.largest > kMuch * range.least;
 }
 
+// Of the bar: the interval where the figure is at one end of it.
+Range ends_of(const Figure& figure) {
+  return figure.is_one_sided
+             ? Range{figure.low, figure.high}
+             : Range{figure.value - figure.expanded, figure.value + figure.expanded};
+}
+
 // Bars that reach to 0 have no end on such an axis: it starts below all points.
 Range axis_of(const Comparison& comparison, std::size_t rows, double factor) {
   constexpr double kMargin = 1.5;
-  constexpr double kBelowPoint = 3.0;
+  constexpr double kBelowPoint = 10.0;
   Range axis;
   for (std::size_t i = 0; i < rows; ++i) {
     const Figure& figure = comparison.figure(comparison.results[i]);
-    const double low = std::max(figure.value - figure.expanded, figure.value / kBelowPoint);
-    const double high = std::max(figure.value + figure.expanded, figure.bound);
+    const Range ends = ends_of(figure);
+    const double low = std::max(ends.least, figure.value / kBelowPoint);
+    const double high = std::max(ends.largest, figure.bound);
     axis = {std::min(axis.least, low), std::max(axis.largest, high)};
   }
   return {factor * axis.least / kMargin, factor * axis.largest * kMargin};
@@ -195,10 +203,11 @@ void write_numbers(const Comparison& comparison, const Layout& layout, bool mark
       continue;
     }
     const Figure& figure = comparison.figure(result);
-    const double low = factor * (figure.value - figure.expanded);
+    const Range ends = ends_of(figure);
+    const double low = factor * ends.least;
     out.exact(factor * figure.value).text(" ");
     out.exact(layout.is_logarithmic ? std::max(low, layout.axis.least) : low).text(" ");
-    out.exact(factor * (figure.value + figure.expanded)).text(" ");
+    out.exact(factor * ends.largest).text(" ");
     if (figure.has_bound) {
       out.exact(factor * figure.bound);
     } else {

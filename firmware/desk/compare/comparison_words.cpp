@@ -198,7 +198,7 @@ void add_notes_on_reports(const Comparison& comparison, std::vector<Note>& notes
                other.other_warnings.end();
       });
       notes.push_back(
-          {"Warned of by the report of " + list_of(warned) + ": " + printable(words) + ".", true});
+          {"The report of " + list_of(warned) + " warns: " + printable(words) + ".", true});
     }
   }
 }
@@ -310,6 +310,12 @@ std::string difference_of(const Comparison& comparison, const Result& first, con
     if (value != 0.0) {
       out.text(" (").text(ratio_of(pair.difference / abs(value)).c_str()).text(")");
     }
+    if (pair.is_one_sided) {
+      const double reach = std::max(pair.difference - pair.low, pair.high - pair.difference);
+      out.text(", its interval from ").text(number_text(pair.low, reach, by).c_str());
+      out.text(" to ").text(number_text(pair.high, reach, by).c_str()).text(unit);
+      return;
+    }
     out.text(", its expanded uncertainty (k = 2) ");
     out.text(number_text(pair.expanded, pair.expanded, by).c_str()).text(unit);
   });
@@ -369,11 +375,27 @@ std::vector<std::string> row_of(const Comparison& comparison, std::size_t index,
   if (comparison.by == FigureKind::kEnergy) {
     row.push_back(value_text(ranked, comparison.by));
   }
-  row.push_back(
-      ranked.has_uncertainty ? number_text(ranked.expanded, ranked.expanded, comparison.by) : "-");
+  const bool has_u = ranked.has_uncertainty && !ranked.is_one_sided;
+  row.push_back(has_u ? number_text(ranked.expanded, ranked.expanded, comparison.by) : "-");
   row.push_back(interval_text(ranked, comparison.by));
   row.push_back(bound_text(ranked, comparison.by));
   return row;
+}
+
+// Where the interval of a figure stands in the place of its U, and what it is mostly made of.
+std::string words_on_one_side(const Comparison& comparison) {
+  const bool any =
+      std::any_of(comparison.results.begin(), comparison.results.end(),
+                  [&](const Result& result) { return comparison.figure(result).is_one_sided; });
+  if (!any) {
+    return "";
+  }
+  return std::string(" A figure without U is at one end of its interval, which decides in the ") +
+         "place of U." +
+         (comparison.by == FigureKind::kMatched
+              ? " The delay taken out stays that of the estimate: what the sensor's own differs by "
+                "counts as error."
+              : "");
 }
 
 bool has_marks(const Comparison& comparison) {
@@ -398,6 +420,15 @@ std::string mark_of(const Result& result) {
   add(result.has_open_damping, "beta");
   add(result.is_simulated, "sim");
   return mark;
+}
+
+std::string criterion_of(const Comparison& comparison) {
+  const Result& first = comparison.results.front();
+  const bool has_one_delay = std::all_of(
+      comparison.results.begin(), comparison.results.end(),
+      [&](const Result& other) { return other.energy_delay.is_like(first.energy_delay); });
+  return has_one_delay ? criterion_of(first)
+                       : "in-band error, for some with a delay taken out and for some without";
 }
 
 std::string criterion_of(const Result& result) {
@@ -425,12 +456,12 @@ std::string banner_of(const Comparison& comparison) {
 
 std::vector<Fact> conditions_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
-  return {
-      {"Filter", filter_of(first)},
-      {"Signal", signal_of(comparison)},
-      {"Criterion", criterion_of(first) + (first.method == "paper" ? ", the paper's method"
-                                                                   : ", the best signal found")},
-      {"Ranked by", words_of_rank(comparison)}};
+  return {{"Filter", filter_of(first)},
+          {"Signal", signal_of(comparison)},
+          {"Criterion",
+           criterion_of(comparison) +
+               (first.method == "paper" ? ", the paper's method" : ", the best signal found")},
+          {"Ranked by", words_of_rank(comparison)}};
 }
 
 ComparisonTable table_of(const Comparison& comparison) {
@@ -468,7 +499,8 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
       {heading_of_expanded(comparison.by),
        std::string("expanded uncertainty (k = 2) of the figure that ranks, from those of S, f0 ") +
            "and beta; interval and bound are of that figure, too. At the estimates no signal has "
-           "more than the bound."});
+           "more than the bound." +
+           words_on_one_side(comparison)});
   if (has_marks(comparison)) {
     legend.push_back({"mark",
                       "fit: chi-square of the fit warns; beta: its points leave the damping open, "
@@ -510,7 +542,7 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
     return {"CANNOT BE TOLD APART", difference};
   }
   return {"told apart",
-          difference + (pair.proven ? ", and at the estimates signals of any shape leave it so: "
+          difference + (pair.proven ? "; at the estimates it is proven for signals of any shape: "
                                       "the upper bound of the first is below the figure of the "
                                       "second"
                                     : "")};

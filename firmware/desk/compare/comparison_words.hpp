@@ -41,6 +41,8 @@ std::string banner_of(const Comparison& comparison);
 
 /// @returns What the energy is that of: "integral-square error", for instance.
 std::string criterion_of(const Result& result);
+/// The same for all; the delay taken out of the energy may differ where the energy does not rank.
+std::string criterion_of(const Comparison& comparison);
 
 /// @returns Filter, signal, criterion, and what ranks.
 std::vector<Fact> conditions_of(const Comparison& comparison);

@@ -50,9 +50,10 @@ const FigureWords& figure_words(FigureKind kind) noexcept {
 }
 
 std::string number_text(double value, double expanded, FigureKind kind) {
+  constexpr int kLeast = 2;
   int digits = kDigitsAlone;
   if (expanded > 0.0) {
-    digits = std::clamp(exponent_of(value) - exponent_of(expanded) + 2, 1, kMostDigits);
+    digits = std::clamp(exponent_of(value) - exponent_of(expanded) + 2, kLeast, kMostDigits);
   }
   return in_digits(value, digits, kind);
 }
@@ -65,12 +66,41 @@ std::string bound_text(const Figure& figure, FigureKind kind) {
 }
 
 std::string value_text(const Figure& figure, FigureKind kind) {
-  return figure.exists ? number_text(figure.value, figure.expanded, kind) : kNone;
+  const double expanded = figure.is_one_sided ? 0.0 : figure.expanded;
+  return figure.exists ? number_text(figure.value, expanded, kind) : kNone;
+}
+
+std::string range_text(double low, double high) {
+  constexpr int kDecimals = 1;  // Of the far end's power of ten.
+  const int decimals = kDecimals - exponent_of(high);
+  const double unit = std::pow(10.0, -decimals);
+  constexpr double kRounding = 1e-9;
+  const double down = std::floor(low / unit + kRounding) * unit;
+  const double up = std::ceil(high / unit - kRounding) * unit;
+  constexpr int kMostPlain = 9;
+  StringSink sink;
+  app::TextWriter out(sink);
+  const auto write = [&](double end) {
+    if (end == 0.0) {
+      out.integer(0);
+    } else if (decimals > kMostPlain || decimals < 0) {
+      out.scientific(end, kDecimals);
+    } else {
+      out.fixed(end, decimals);
+    }
+  };
+  write(down);
+  out.text(" to ");
+  write(up);
+  return sink.text();
 }
 
 std::string interval_text(const Figure& figure, FigureKind kind) {
   if (!figure.has_interval && !figure.has_range) {
     return kNone;
+  }
+  if (figure.is_one_sided) {
+    return range_text(figure.low, figure.high);
   }
   return number_text(figure.low, figure.expanded, kind) + " to " +
          number_text(figure.high, figure.expanded, kind);

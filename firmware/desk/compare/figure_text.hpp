@@ -27,6 +27,10 @@ std::string bound_text(const Figure& figure, FigureKind kind);
 /// @returns `number_text()` of the value, "-" if there is none.
 std::string value_text(const Figure& figure, FigureKind kind);
 
+/// @returns "0 to 0.024": an interval of a figure that is at one end of it, rounded outwards to two
+/// digits of the far end.
+std::string range_text(double low, double high);
+
 /// @returns "1.185 to 1.207"; "-" if there is none.
 std::string interval_text(const Figure& figure, FigureKind kind);
 

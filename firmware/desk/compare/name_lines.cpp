@@ -63,11 +63,17 @@ std::string cut(const std::string& text, double width, Typeface typeface) {
   return text.substr(0, bytes_that_fit(text, 0, width - 3.0, typeface)) + kDots;
 }
 
+// What tells a device from those of its name, and is not cut off: its number or its file.
+std::string last_of(const Result& result) {
+  return result.has_namesake ? "(" + result.file + ")" : printable(result.serial);
+}
+
 }  // namespace
 
 std::string name_of(const Result& result) {
   const std::string device = printable(result.device);
-  return result.serial.empty() ? device : device + " " + printable(result.serial);
+  const std::string name = result.serial.empty() ? device : device + " " + printable(result.serial);
+  return result.has_namesake ? name + " (" + result.file + ")" : name;
 }
 
 double width_of(const std::string& text, Typeface typeface) {
@@ -98,39 +104,41 @@ std::vector<std::string> wrapped(const std::string& text, double width, std::siz
 
 std::vector<std::string> name_lines(const Result& result, double width, std::size_t most,
                                     Typeface typeface) {
+  const std::string last = last_of(result);
   const std::vector<std::string> whole = wrapped(name_of(result), width, kNoLimit, typeface);
-  if (whole.size() <= most || result.serial.empty() || most < 2) {
+  if (whole.size() <= most || last.empty() || most < 2) {
     return wrapped(name_of(result), width, most, typeface);
   }
   std::vector<std::string> lines = wrapped(printable(result.device), width, most - 1, typeface);
-  lines.push_back(cut(printable(result.serial), width, typeface));
+  lines.push_back(cut(last, width, typeface));
   return lines;
 }
 
 std::string short_name_of(const Result& result, std::size_t most) {
   const std::string name = name_of(result);
-  if (characters_in(name) <= most || result.serial.empty()) {
+  const std::string last = last_of(result);
+  if (characters_in(name) <= most || last.empty()) {
     return cut(name, static_cast<double>(most), Typeface::kMonospaced);
   }
   const std::size_t half = most / 2;
-  const std::string serial =
-      cut(printable(result.serial), static_cast<double>(half), Typeface::kMonospaced);
+  const std::string serial = cut(last, static_cast<double>(half), Typeface::kMonospaced);
   const std::size_t rest = most - characters_in(serial) - 1;
   return cut(printable(result.device), static_cast<double>(rest), Typeface::kMonospaced) + " " +
          serial;
 }
 
-std::string list_of(const std::vector<const Result*>& results) {
+std::string list_of(const std::vector<const Result*>& results, const char* last) {
   constexpr std::size_t kMostNamed = 5;
   const std::size_t count = results.size();
-  // One more name is as short as "and 1 others".
+  // One more name is as short as "and 1 other".
   const std::size_t named = count <= kMostNamed + 1 ? count : kMostNamed;
   std::string text;
   for (std::size_t i = 0; i < named; ++i) {
-    text += i == 0 ? "" : i + 1 == count ? " and " : ", ";
+    text += i == 0 ? "" : i + 1 == count ? " " + std::string(last) + " " : ", ";
     text += short_name_of(*results[i]);
   }
-  return named == count ? text : text + " and " + std::to_string(count - named) + " others";
+  return named == count ? text
+                        : text + " " + last + " " + std::to_string(count - named) + " others";
 }
 
 }  // namespace emax::desk

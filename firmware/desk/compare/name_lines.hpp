@@ -13,7 +13,8 @@ namespace emax::desk {
 /// as a report shows. Longer ones are cut.
 inline constexpr std::size_t kNameShown = 240;
 
-/// @returns The device's label or file with its serial number, in one printable line.
+/// @returns The device's label or file with its serial number, in one printable line; with the file
+/// in brackets where another result has the same label and number.
 std::string name_of(const Result& result);
 
 /// How wide characters are: one each in columns of text, by their shape in a picture.
@@ -37,7 +38,8 @@ std::vector<std::string> name_lines(const Result& result, double width, std::siz
 /// @returns `name_of()` in one line of at most so many characters, 12 or more.
 std::string short_name_of(const Result& result, std::size_t most = kNameShown);
 
+/// @param[in] last Word before the last one: "and" or "or".
 /// @returns "A, B and C" by `short_name_of()`; beyond the fifth "and 3 others".
-std::string list_of(const std::vector<const Result*>& results);
+std::string list_of(const std::vector<const Result*>& results, const char* last = "and");
 
 }  // namespace emax::desk

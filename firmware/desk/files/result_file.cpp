@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emax/app/base/version.hpp"
+#include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/base/elementary.hpp"
 
@@ -14,6 +15,7 @@
 #include "desk/cli/stop_request.hpp"
 #include "desk/files/json_reader.hpp"
 #include "desk/files/text_file.hpp"
+#include "desk/report/warning_words.hpp"
 
 namespace emax::desk {
 
@@ -49,6 +51,31 @@ class Taker final {
     return value;
   }
 
+  // Of what is above 0.
+  double positive(const Group& group, const char* name) {
+    const double value = size(group, name);
+    refuse_if(value == 0.0, group, name, "is 0");
+    return value;
+  }
+
+  // Of what is between 0 and 1.
+  double share(const Group& group, const char* name) {
+    const double value = positive(group, name);
+    refuse_if(!(value < 1.0), group, name, "is 1 or more");
+    return value;
+  }
+
+  // Of a bound: rounding apart it is no less than the figure.
+  void bound(const Group& group, const char* name, Figure& figure) {
+    constexpr double kRounding = 1e-9;
+    figure.bound = optional_number(group, name, figure.has_bound);
+    const double least = figure.value - kRounding * abs(figure.value);
+    if (figure.has_bound && figure.value >= 0.0) {
+      refuse_negative(group, name, figure.bound);
+    }
+    refuse_if(figure.has_bound && figure.bound < least, group, name, "is below the figure");
+  }
+
   double optional_size(const Group& group, const char* name, bool& exists) {
     const double value = optional_number(group, name, exists);
     refuse_negative(group, name, value);
@@ -62,6 +89,9 @@ class Taker final {
     if (!exists && value.kind() != JsonValue::Kind::kNull) {
       miss(group, name, "number");
     }
+    // Beyond it squares are no numbers.
+    constexpr double kMost = 1e150;
+    refuse_if(abs(value.number()) > kMost, group, name, "is beyond 1e150");
     return value.number();
   }
 
@@ -85,6 +115,7 @@ class Taker final {
     if (figure.has_interval) {
       figure.low = ends[0].number();
       figure.high = ends[1].number();
+      refuse_if(figure.low > figure.high, group, name, "ends below its beginning");
     } else if (value.kind() != JsonValue::Kind::kNull) {
       miss(group, name, "interval");
     }
@@ -101,10 +132,14 @@ class Taker final {
   const std::string& missing() const noexcept { return missing_; }
 
  private:
-  void refuse_negative(const Group& group, const char* name, double value) {
-    if (value < 0.0 && missing_.empty()) {
-      missing_ = std::string(group.name) + "." + name + " is below 0";
+  void refuse_if(bool is_wrong, const Group& group, const char* name, const char* what) {
+    if (is_wrong && missing_.empty()) {
+      missing_ = std::string(group.name) + "." + name + " " + what;
     }
+  }
+
+  void refuse_negative(const Group& group, const char* name, double value) {
+    refuse_if(value < 0.0, group, name, "is below 0");
   }
 
   void miss(const Group& group, const char* name, const char* kind) {
@@ -137,24 +172,45 @@ Problem check_version(const JsonValue& root, const std::string& file) {
 void take_conditions(const JsonValue& root, Taker& taker, Result& result) {
   const Group filter = {root["filter"], "filter"};
   const Group energy = {root["energy"], "energy"};
-  result.order = taker.size(filter, "order");
-  result.cutoff_hz = taker.size(filter, "cutoff");
+  result.order = taker.positive(filter, "order");
+  result.cutoff_hz = taker.positive(filter, "cutoff");
   result.gain_mode = taker.text(filter, "gain_mode");
   result.gain = taker.size(filter, "gain");
-  result.limit_mps2 = taker.size(energy, "a");
-  result.duration_s = taker.size(energy, "T");
+  result.limit_mps2 = taker.positive(energy, "a");
+  result.duration_s = taker.positive(energy, "T");
   result.criterion = taker.text(energy, "criterion");
   result.energy_delay = taker.delay(energy, result.criterion == "band");
   result.method = taker.text(energy, "method");
-  result.sensitivity = taker.size({root["model"], "model"}, "S");
+  result.sensitivity = taker.positive({root["model"], "model"}, "S");
+}
+
+// In the place of the symmetric interval, where the figure is at one end of both.
+void take_shortest(const Group& block, const char* name, Taker& taker, Figure& figure) {
+  Figure shortest = figure;
+  taker.optional_interval(block, name, shortest);
+  if (!figure.has_interval) {
+    return;
+  }
+  const CoverageInterval read = shortest.has_interval
+                                    ? CoverageInterval{shortest.low, shortest.high}
+                                    : CoverageInterval{figure.low, figure.high};
+  const CoverageInterval interval = app::widened(read, figure.value);
+  figure.is_one_sided = app::is_one_sided(figure.value, figure.expanded, interval);
+  if (figure.is_one_sided) {
+    figure.low = interval.low;
+    figure.high = interval.high;
+  }
 }
 
 void take_uncertainty(const Group& block, Taker& taker, Figure& energy, double& probability) {
   energy.has_uncertainty = true;
   energy.u = taker.size(block, "u");
   energy.expanded = kCoverageFactor * energy.u;
-  probability = taker.number(block, "probability");
+  probability = taker.share(block, "probability");
   taker.interval(block, "interval", energy);
+  if (energy.value > 0.0) {
+    take_shortest(block, "shortest", taker, energy);
+  }
 }
 
 // An interval over the box is not one of E: only u is taken from there.
@@ -173,7 +229,7 @@ void take_energy(const JsonValue& root, Taker& taker, Result& result) {
   // Only the difference of two energies can be below 0.
   energy.value =
       result.criterion == "difference" ? taker.number(block, "E") : taker.size(block, "E");
-  energy.bound = taker.optional_number(block, "bound", energy.has_bound);
+  taker.bound(block, "bound", energy);
   result.ideal_percent =
       taker.optional_number({root["ideal"], "ideal"}, "rms_percent", result.has_ideal);
   const Group uncertainty = {root["uncertainty"], "uncertainty"};
@@ -205,11 +261,12 @@ void take_open_damping(const JsonValue& root, Result& result) {
 void take_figure(const Group& block, Taker& taker, Figure& figure) {
   figure.exists = true;
   figure.value = taker.size(block, "rms_percent");
-  figure.bound = taker.optional_size(block, "bound_percent", figure.has_bound);
+  taker.bound(block, "bound_percent", figure);
   figure.u = taker.optional_size(block, "u_percent", figure.has_uncertainty);
   if (figure.has_uncertainty) {
     figure.expanded = taker.size(block, "U_percent");
     taker.optional_interval(block, "interval_percent", figure);
+    take_shortest(block, "shortest_percent", taker, figure);
   }
 }
 
@@ -256,7 +313,8 @@ void take_marks(const JsonValue& root, Result& result) {
   for (const JsonValue& warning : warnings.elements()) {
     const std::string& about = warning["about"].text();
     if (about != kAboutFit && about != kAboutDamping && warning["text"].is_string()) {
-      result.other_warnings.push_back(warning["text"].text());
+      result.other_warnings.push_back(
+          sentence_of(warning["text"].text(), warning["least_time_s"].number()));
     }
   }
   result.is_simulated = is_said ? root["simulated"].is_true() : root["bench"]["truth"].is_object();

@@ -34,8 +34,10 @@ struct Figure {
   bool has_interval = false;
   /// Low and high are those of the dampings that the points leave open, and there is no u.
   bool has_range = false;
-  double low = 0.0;  ///< Of the coverage interval.
+  double low = 0.0;  ///< Of the coverage interval, of a probability of `Result::probability`.
   double high = 0.0;
+  /// The interval is the shortest one, which holds the figure, and +-U says little.
+  bool is_one_sided = false;
   bool has_bound = false;
   double bound = 0.0;  ///< No signal has more.
   /// How far the true figure can be from `value` by the way it is computed, beside U.
@@ -84,6 +86,7 @@ struct Result {
   bool is_simulated = false;                ///< The bench was.
   bool has_open_damping = false;            ///< The points do not determine beta.
   std::vector<std::string> other_warnings;  ///< What else its report warns of, a line each.
+  bool has_namesake = false;                ///< Another result has the same device and number.
 
   const Figure& figure(FigureKind kind) const noexcept {
     return figures[static_cast<std::size_t>(kind)];

@@ -9,11 +9,13 @@
 #include "emax/app/report/report_warnings.hpp"
 
 #include "desk/cli/console.hpp"
+#include "desk/compare/figure_text.hpp"
 #include "desk/files/rounding.hpp"
 #include "desk/page/certificate_part.hpp"
 #include "desk/page/html_markup.hpp"
 #include "desk/page/page_frame.hpp"
 #include "desk/page/page_picture.hpp"
+#include "desk/report/warning_words.hpp"
 
 namespace emax::desk {
 
@@ -115,8 +117,10 @@ std::string percentage(double percent, double expanded) {
       return;
     }
     constexpr int kMostDecimals = 12;
+    // Two digits of U, and of the number at least.
+    const double least = std::min(expanded, percent > 0.0 ? percent : expanded);
     const int decimals =
-        std::clamp(1 - static_cast<int>(std::floor(std::log10(expanded))), 0, kMostDecimals);
+        std::clamp(1 - static_cast<int>(std::floor(std::log10(least))), 0, kMostDecimals);
     out.fixed(percent, decimals).text(" % +- ").fixed(expanded, decimals).text(" %");
   });
 }
@@ -134,29 +138,60 @@ double expanded(const app::EnergyUncertainty& known) {
   return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
 }
 
-void append_in_band(std::string& html, const char* kind, const char* name,
-                    const EvaluationResults& results, const app::FigureResults& figure) {
-  append_figure(html, kind, name,
-                percentage(results.percent_of(figure.energy_v2s), expanded(figure.uncertainty)) +
-                    " of S&nbsp;a");
+bool is_one_sided(const EvaluationResults& results, const app::FigureResults& figure) {
+  const double u = expanded(figure.uncertainty);
+  return u > 0.0 && app::is_one_sided(results.percent_of(figure.energy_v2s), u,
+                                      results.interval_percent_of(figure));
+}
+
+// With U, or with the interval where the figure is at one end of it.
+std::string in_band_value(const EvaluationResults& results, const app::FigureResults& figure) {
+  const double percent = results.percent_of(figure.energy_v2s);
+  if (!is_one_sided(results, figure)) {
+    return percentage(percent, expanded(figure.uncertainty)) + " of S&nbsp;a";
+  }
+  const CoverageInterval interval = results.interval_percent_of(figure);
+  return percentage(percent, 0.0) + " of S&nbsp;a; " + words_of([&](TextWriter& out) {
+           out.general(kPercent * results.settings.probability, 6).text(" % interval ");
+           out.text(range_text(interval.low, interval.high).c_str()).text(" %");
+         });
+}
+
+void append_in_band(std::string& html, const char* kind, const EvaluationResults& results,
+                    const app::FigureResults& figure) {
+  std::string name = "Worst in-band error, with its delay";
+  if (&figure == &results.matched) {
+    name =
+        std::string("Worst in-band error, constant delay taken out") +
+        (is_one_sided(results, figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
+  }
+  append_figure(html, kind, name, in_band_value(results, figure));
 }
 
 constexpr const char* kFirst = " class=\"first\"";
-constexpr const char* kWithDelay = "Worst in-band error, with its delay";
 
-// The figure that engineers rank sensors by; the next best where it is refused.
+// The figure that engineers rank sensors by; the next best where it is refused, or where no delay
+// was to be taken out.
+const app::FigureResults* leading_figure(const EvaluationResults& results) {
+  const bool is_plain = results.settings.delay_choice == app::DelayChoice::kNone;
+  if (results.matched.exists() && !is_plain) {
+    return &results.matched;
+  }
+  return results.band.exists() ? &results.band : nullptr;
+}
+
 void append_leading_figure(std::string& html, const EvaluationResults& results) {
-  if (results.matched.exists()) {
-    append_in_band(html, kFirst, "Worst in-band error, constant delay taken out (U, k = 2)",
-                   results, results.matched);
-  } else if (results.band.exists()) {
-    append_in_band(html, kFirst, kWithDelay, results, results.band);
+  if (const app::FigureResults* figure = leading_figure(results)) {
+    append_in_band(html, kFirst, results, *figure);
   }
 }
 
 void append_second_figure(std::string& html, const EvaluationResults& results) {
-  if (results.matched.exists() && results.band.exists()) {
-    append_in_band(html, "", kWithDelay, results, results.band);
+  const app::FigureResults* const first = leading_figure(results);
+  for (const app::FigureResults* figure : {&results.matched, &results.band}) {
+    if (figure != first && figure->exists()) {
+      append_in_band(html, "", results, *figure);
+    }
   }
 }
 
@@ -189,14 +224,9 @@ void append_energy(std::string& html, const EvaluationResults& results) {
     append_figure(html, "", name, format.number(energy) + format.unit());
     return;
   }
-  // The figures above are of a gain that follows S.
-  const bool holds_gain = results.settings.criterion == Criterion::kInBandError &&
-                          results.settings.gain_mode == app::GainMode::kAuto;
-  append_figure(
-      html, "",
-      name + (holds_gain ? ", with U (k = 2) for G at the estimate of S" : ", with U (k = 2)"),
-      "(" + format.number(energy) + " ± " + format.number(kCoverageFactor * u) + ")" +
-          format.unit());
+  append_figure(html, "", name + ", with U (k = 2)",
+                "(" + format.number(energy) + " ± " + format.number(kCoverageFactor * u) + ")" +
+                    format.unit());
 }
 
 constexpr const char* kMore = " class=\"more\"";
@@ -285,14 +315,16 @@ std::vector<app::Warning> warnings_of(const EvaluationResults& results,
 }
 
 // How many there are and which, beside the number that they are about.
-void append_warnings(std::string& html, const std::vector<app::Warning>& warnings) {
+void append_warnings(std::string& html, const EvaluationResults& results,
+                     const std::vector<app::Warning>& warnings) {
   if (warnings.empty()) {
     return;
   }
   std::string list = "<ul>";
   for (const app::Warning warning : warnings) {
+    const std::string words = sentence_of(words_of(warning), least_time_s(warning, results));
     list += "<li>" + link_to(place_of(warning)) + ": " +
-            words_of([&](TextWriter& out) { out.text(words_of(warning)); }) + "</li>";
+            words_of([&](TextWriter& out) { out.text(words.c_str()); }) + "</li>";
   }
   const std::string count = std::to_string(warnings.size());
   append_figure(html, " class=\"warns\"", count + (warnings.size() == 1 ? " warning" : " warnings"),
@@ -303,7 +335,7 @@ void append_headline(std::string& html, const EvaluationResults& results,
                      const std::vector<app::Warning>& warnings) {
   html += std::string("<dl class=\"headline") + (warnings.empty() ? "" : " doubtful") + "\">\n";
   append_leading_figure(html, results);
-  append_warnings(html, warnings);
+  append_warnings(html, results, warnings);
   append_second_figure(html, results);
   append_papers_figure(html, results);
   append_energy(html, results);

@@ -12,6 +12,7 @@
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/app/sequencer/sequencer.hpp"
 #include "emax/identify/frequency_response.hpp"
 
@@ -72,9 +73,43 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
              : describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
 }
 
+// Of a criterion whose error rounding hides, as the sensor is nearly the filter: the in-band error
+// is another one, and has figures. Their report is then the answer, and the remark says why.
+Problem work_in_band(const ReportOptions& options, BenchJob& job, ConsoleProgress& progress,
+                     Problem& remark) {
+  app::Sequencer& sequencer = job.sequencer();
+  const app::Failure& failure = sequencer.evaluation().failure;
+  const bool is_hidden = failure.status == Status::kLostDigits &&
+                         failure.stage == app::Stage::kEnergy &&
+                         options.settings.criterion != Criterion::kInBandError;
+  const Problem problem = describe_failure(sequencer.evaluation(), options, true);
+  if (!is_hidden) {
+    return problem;
+  }
+  app::Settings settings = options.settings;
+  settings.criterion = Criterion::kInBandError;
+  settings.delay_choice = app::DelayChoice::kNone;
+  if (sequencer.evaluate(settings, app::Goal::kReport)) {
+    return problem;
+  }
+  if (Problem in_band = job.run(progress)) {
+    return in_band;
+  }
+  // With so short a T the words on that are the answer.
+  if (sequencer.failure() || holds(app::Warning::kShortTime, sequencer.evaluation(), {})) {
+    return problem;
+  }
+  remark = {ExitStatus::kDone,
+            problem.line + "; so E, trials and trend are those of --criterion band"};
+  return {};
+}
+
 // Everything from the measurement to the results, with room for the trials' values, so that each is
 // computed once.
-Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& imported) {
+//
+// @param[out] remark What the results are of, where that is not what was asked for.
+Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& imported,
+             Problem& remark) {
   const std::uint32_t trials =
       options.settings.adaptive ? kMaxStoredTrials : options.settings.trials;
   const std::size_t room = std::min(trials, kMaxStoredTrials);
@@ -96,7 +131,10 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {
-    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
+    const bool is_hidden = sequencer.evaluation().failure.status == Status::kLostDigits;
+    problem = is_hidden
+                  ? work_in_band(options, job, progress, remark)
+                  : describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
   }
   return problem;
 }
@@ -170,6 +208,23 @@ Problem keep_early_points(const Problem& fault, const std::vector<EarlyPoint>& p
   return kept;
 }
 
+// Two remarks in one line.
+Problem both(const Problem& first, const Problem& second) {
+  const bool is_single = first.line.empty() || second.line.empty();
+  return {ExitStatus::kDone, first.line + (is_single ? "" : "; ") + second.line};
+}
+
+// What the star at the figures means, and whose E it is.
+std::string mark_of(const app::EvaluationResults& evaluation, const app::ReportContext& context,
+                    const Problem& criterion_changed) {
+  const std::string mark = mark_of_figures(evaluation, context);
+  if (criterion_changed.line.empty()) {
+    return mark;
+  }
+  return std::string("E of the criterion asked for is hidden by rounding: below it is that of ") +
+         "the in-band error." + (mark.empty() ? "" : "\n  " + mark);
+}
+
 bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
   return !options.points_path.empty() && !(options.damping > 0.0) &&
          evaluation.stage == app::Stage::kFailed &&
@@ -228,7 +283,8 @@ Problem run_report(Span<const std::string_view> arguments) {
   }
   static BenchJob bench;
   static ImportedPoints imported;
-  Problem problem_of_work = work(options, bench, imported);
+  Problem criterion_changed;
+  Problem problem_of_work = work(options, bench, imported, criterion_changed);
   const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
@@ -240,7 +296,7 @@ Problem run_report(Span<const std::string_view> arguments) {
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};
-  const std::string mark = problem_of_work ? "" : mark_of_figures(evaluation, context);
+  const std::string mark = problem_of_work ? "" : mark_of(evaluation, context, criterion_changed);
   context.mark = or_null(mark);
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
@@ -273,7 +329,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   if (!problem && remark.line.empty()) {
     remark = bench.unstruck();
   }
-  return problem ? problem : remark;
+  return problem ? problem : both(criterion_changed, remark);
 }
 
 std::string help_on_report() {

@@ -265,6 +265,40 @@ TEST(EnergyTrials, InPiecesOfTheRangesFindWhatAFullSearchOfThatDeviceFinds) {
   }
 }
 
+// Some hundred switches: pieces cost more than a few refinements, and much less than many.
+TEST(EnergyTrials, AreWorthTheMorePiecesTheMoreThereAre) {
+  constexpr std::uint32_t kLooked = 200;
+  std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
+  ModalModel model{};
+  ASSERT_EQ(model.set({1.0, 27000.0, 0.02}, {4, 1000.0, 1.0}, Criterion::kIntegralSquareError),
+            Status::kOk);
+  TrialSettings settings = settings_for(Method::kBest, 2e-3);
+  settings.box = {0.003, 1500.0, 0.008};
+  settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+  const auto refined = [] {
+    std::uint32_t count = 0;
+    for (std::uint32_t t = 0; t < kLooked; ++t) {
+      trials.begin(t, workspace);
+      count += trials.done() ? 0U : 1U;
+    }
+    return count;
+  };
+  settings.expected_trials = 1000;
+  ASSERT_EQ(start(settings, model), Status::kOk);
+  EXPECT_EQ(trials.notes().pieces, 0);
+  EXPECT_EQ(refined(), kLooked);
+
+  settings.expected_trials = 12000;
+  ASSERT_EQ(start(settings, model), Status::kOk);
+  EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
+  EXPECT_LT(refined(), kLooked / 4);
+  for (std::uint32_t t = 0; t < 4; ++t) {
+    const double found = trials.energy(t, workspace);
+    const double expected = full_search(model, trials.device(t), settings);
+    EXPECT_NEAR(found, expected, 2.0 * trials.tolerance() * expected) << t;
+  }
+}
+
 TEST(EnergyTrials, BeforeTheyAreReadyTheyRefineTheEstimatesSignal) {
   const TrialSettings settings = wide_settings();
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);

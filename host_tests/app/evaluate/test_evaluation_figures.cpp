@@ -106,6 +106,30 @@ TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {
   EXPECT_EQ(longer.trend_count, 4U);
 }
 
+TEST(EvaluationFigures, DefaultTrendTakesNoMinutes) {
+  // 12 cells in each of 500 periods per ms: 12000 at 2 ms, and 24000 to 60000 for the others, which
+  // a PC has room for.
+  if (emax::kMaxCells < 65536) {
+    return;
+  }
+  EvaluationResults& results = emax::test::shared_evaluation();
+  emax::app::Evaluation run = emax::test::run_on(results);
+  ASSERT_EQ(run.start_from_model({{1.0, 500000.0, 0.7}, {}}, emax::app::kDefaultSettings,
+                                 emax::app::Goal::kTrend),
+            Status::kOk);
+  while (!run.done() && results.stage != emax::app::Stage::kTrend) {
+    run.step();
+  }
+  // Looks at each length in one step, but for that of the energy.
+  for (int i = 0; i < 10 && !run.done(); ++i) {
+    run.step();
+  }
+  EXPECT_TRUE(run.done());
+  EXPECT_EQ(results.status(), Status::kOk);
+  EXPECT_EQ(results.trend_left_out, 0x1EU);
+  EXPECT_EQ(results.trend_count, 0U);
+}
+
 TEST(EvaluationFigures, GuardsEachUncertainty) {
   Settings settings = quick_settings();
   const EvaluationResults& results = evaluated(kPaper, settings);

@@ -34,6 +34,9 @@ struct TrialSettings : DrawSettings {
   /// else's while there are trials. None, or `EnergyTrials::kFirstPieces` and more; 96 are enough
   /// for most.
   Span<TrialPiece> pieces;
+  /// How many trials there will be, if that is known: the more there are, the more pieces are cut
+  /// where each trial is refined without them.
+  std::uint32_t expected_trials = 0;
 };
 
 /// The trials of Fig. 5, in any order: `DeviceDraws` draws the device of a trial.
@@ -46,7 +49,9 @@ struct TrialSettings : DrawSettings {
 /// Where a polynomial does not hold all over the ranges, as signals end and others begin, and there
 /// is memory for `TrialSettings::pieces`, the ranges are cut along f0 (and damping), and each part
 /// has branches and polynomials of its own; where these fail too, it is cut in two, as long as
-/// more than 1/256 of the draws are in it. What is left is refined.
+/// more than 1/256 of the draws are in it and all pieces together cost no more than a quarter of
+/// the refinements that they save, as the first trials show (or half a second on a PC, if that is
+/// more). What is left is refined.
 ///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
 /// estimate's S and multiplied by the square of their ratio.
@@ -90,6 +95,8 @@ class EnergyTrials {
 
   /// @returns The device of one trial; the estimate if there is none, see `is_exhausted()`.
   Accelerometer device(std::uint32_t trial) noexcept;
+  /// @returns S of the trial last begun, or last asked for its device.
+  double sensitivity() const noexcept { return draws_.sensitivity(); }
   /// @returns How often trials were drawn again because a draw was no device.
   std::uint32_t redraws() const noexcept { return draws_.redraws(); }
   /// @returns Whether a trial has been drawn again DeviceDraws::kMaxRedraws times in vain; its
@@ -145,7 +152,8 @@ class EnergyTrials {
   void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
   void cut(TrialPiece& piece) noexcept;
-  bool is_worth_pieces() const noexcept;
+  bool is_worth_pieces() noexcept;
+  double refined_part() noexcept;
   bool is_worth_cutting(const TrialPiece& piece) const noexcept;
   EnergyBranches& asked() noexcept;
   EnergyBranches& branches_at(const DeviceDraws::Place& place) noexcept;
@@ -156,6 +164,8 @@ class EnergyTrials {
   Span<TrialPiece> pieces_;
   std::size_t pieces_used_ = 0;
   std::size_t work_of_pieces_ = 0;
+  double work_saved_ = 0.0;  // By pieces, in refinements times switches, as the work of them.
+  std::uint32_t expected_trials_ = 0;
   std::size_t pieces_begun_ = 0;
   std::size_t pieces_ready_ = 0;
   std::size_t first_axis_ = 1;  // That the first pieces are parts of.

@@ -85,6 +85,9 @@ void Evaluation::begin_figure(Stage stage) noexcept {
   }
   if (status != Status::kOk) {
     refuse_figure(status);
+  } else if (stage == Stage::kBand) {
+    part->peak.start(part->model);
+    work_.figure_phase_ = Phase::kSettling;
   }
 }
 
@@ -94,6 +97,7 @@ void Evaluation::refuse_figure(Status status) noexcept {
   } else {
     figure().is_done = true;
     figure().status = status;
+    figure().is_short = results_.settings.duration_s < kMuchShorter * results_.band_settling.time_s;
   }
   work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
 }
@@ -101,6 +105,9 @@ void Evaluation::refuse_figure(Status status) noexcept {
 void Evaluation::step_figure() noexcept {
   using Phase = EvaluationWorkspace::FigurePhase;
   switch (work_.figure_phase_) {
+    case Phase::kSettling:
+      step_figure_settling();
+      return;
     case Phase::kSearch:
       step_figure_search();
       return;
@@ -125,6 +132,8 @@ void Evaluation::step_figure() noexcept {
 double Evaluation::progress_of_figure() const noexcept {
   using Phase = EvaluationWorkspace::FigurePhase;
   switch (work_.figure_phase_) {
+    case Phase::kSettling:
+      return 0.0;
     case Phase::kSearch:
       return work_.search_.progress();
     case Phase::kBound:
@@ -139,6 +148,24 @@ double Evaluation::progress_of_figure() const noexcept {
       break;
   }
   return 1.0;
+}
+
+/// How long a time the error takes to develop: the filter rings longer than the peak of the whole
+/// error lets see.
+void Evaluation::step_figure_settling() noexcept {
+  EvaluationWorkspace::FigurePart& part = work_.part_.figure;
+  if (!part.peak.done()) {
+    part.peak.step(part.model);
+    if (part.peak.done()) {
+      part.settling.start(part.model, kSettled * abs(part.peak.result().value));
+    }
+    return;
+  }
+  part.settling.step(part.model);
+  if (part.settling.done()) {
+    results_.band_settling = part.settling.result();
+    work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kSearch;
+  }
 }
 
 void Evaluation::step_figure_search() noexcept {
@@ -217,13 +244,24 @@ void Evaluation::begin_figure_trials() noexcept {
   }
 }
 
+/// Whether the gain follows S where E has an uncertainty, as it does for the figures of the band:
+/// an error of S is then one of gain, and none in band.
+bool Evaluation::holds_sensitivity() const noexcept {
+  return results_.settings.criterion == Criterion::kInBandError &&
+         results_.settings.gain_mode != GainMode::kFixed;
+}
+
 void Evaluation::begin_uncertainty() noexcept {
   results_.stage = Stage::kUncertainty;
   work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kPrediction;
   auto* const part = new (&work_.part_.trial) EvaluationWorkspace::TrialPart;
   work_.stored_ = 0;
-  const Status status =
-      part->trials.start(results_.model, results_.maximum, trial_settings(Distribution::kNormal));
+  TrialSettings settings = trial_settings(Distribution::kNormal);
+  if (holds_sensitivity()) {
+    settings.gain_follows = false;
+    settings.holds_sensitivity = true;
+  }
+  const Status status = part->trials.start(results_.model, results_.maximum, settings);
   if (status != Status::kOk) {
     refuse_uncertainty(status);
   }
@@ -303,21 +341,27 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
   known.symmetric = result.symmetric;
   known.shortest = result.shortest;
   // percent_of() of an energy is as sqrt(E) is.
-  const double variance = part.root.squares / static_cast<double>(part.root.count - 1);
-  known.u_percent = results_.percent_of(1.0) * sqrt(variance);
+  constexpr double kRounding = 1e-12;
+  const double u = sqrt(part.root.squares / static_cast<double>(part.root.count - 1));
+  known.u_percent = u > kRounding * part.root.origin ? results_.percent_of(1.0) * u : 0.0;
 }
 
-/// Takes sqrt(E) of a trial while the first pass runs.
-void Evaluation::note_root(double energy_v2s) noexcept {
+/// Takes sqrt(E) over the trial's own S, for that of the estimate, while the first pass runs.
+void Evaluation::note_root(std::uint32_t trial, double energy_v2s, bool is_stored) noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   EvaluationWorkspace::Scatter& root = part.root;
-  const bool is_normal = results_.settings.distribution == Distribution::kNormal;
-  const bool is_wanted =
-      results_.stage >= Stage::kBand || (is_normal && results_.stage == Stage::kMonteCarlo);
+  const bool is_wanted = results_.stage >= Stage::kBand ||
+                         (are_trials_normal() && results_.stage == Stage::kMonteCarlo);
   if (!is_wanted || part.monte_carlo.pass() != 1) {
     return;
   }
-  const double value = sqrt(energy_v2s);
+  const Accelerometer& estimate = results_.device.estimate;
+  const bool is_figure = results_.stage == Stage::kBand || results_.stage == Stage::kMatched;
+  const bool is_held =
+      results_.settings.gain_mode != GainMode::kFixed && (is_figure || holds_sensitivity());
+  const double sensitivity =
+      is_stored && !is_held ? part.trials.device(trial).sensitivity : part.trials.sensitivity();
+  const double value = sqrt(energy_v2s) * (estimate.sensitivity / sensitivity);
   if (root.count == 0) {
     root.origin = value;
   }

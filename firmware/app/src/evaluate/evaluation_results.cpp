@@ -78,6 +78,7 @@ void EvaluationResults::clear() noexcept {
   judgement = {};
   has_fit_draws = false;
   ideal = {};
+  band_settling = {};
   band.clear();
   matched.clear();
   drop_trials();
@@ -85,7 +86,23 @@ void EvaluationResults::clear() noexcept {
   drop_trend();
 }
 
+CoverageInterval widened(const CoverageInterval& interval, double figure) noexcept {
+  return {figure < interval.low ? figure : interval.low,
+          figure > interval.high ? figure : interval.high};
+}
+
+bool is_one_sided(double figure, double expanded, const CoverageInterval& interval) noexcept {
+  const double below = figure - interval.low;
+  const double above = interval.high - figure;
+  return expanded > 0.0 && interval.high > interval.low &&
+         (expanded > figure || 2.0 * below < above || 2.0 * above < below);
+}
+
 const char* FigureResults::refusal() const noexcept {
+  if (status == Status::kDelayNotResolved && is_short) {
+    return "T is too short beside the settling time for so small an error to develop; take a "
+           "longer one.";
+  }
   // Device and settings are valid, but for a gain of 0.
   return status == Status::kInvalidArgument ? kNoGain : explain(status);
 }
@@ -94,6 +111,7 @@ void FigureResults::clear() noexcept {
   is_done = false;
   status = Status::kOk;
   has_bound = false;
+  is_short = false;
   switches = 0;
   energy_v2s = 0.0;
   rounding_v2s = 0.0;
@@ -197,6 +215,13 @@ double EvaluationResults::trial_scale(const Settings& wanted) const noexcept {
 double EvaluationResults::percent_of(double energy) const noexcept {
   constexpr double kPercent = 100.0;
   return kPercent * sqrt(energy / settings.duration_s) / (device.estimate.sensitivity * limit_mps2);
+}
+
+CoverageInterval EvaluationResults::interval_percent_of(
+    const FigureResults& figure) const noexcept {
+  const CoverageInterval& shortest = figure.uncertainty.shortest;
+  return widened({percent_of(shortest.low), percent_of(shortest.high)},
+                 percent_of(figure.energy_v2s));
 }
 
 double EvaluationResults::rms_error_v() const noexcept {

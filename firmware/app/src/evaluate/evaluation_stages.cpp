@@ -292,6 +292,7 @@ TrialSettings Evaluation::trial_settings(Distribution distribution) const noexce
   trial_settings.gain_follows = settings.gain_mode == GainMode::kTrack;
   trial_settings.search = search_settings(settings, settings.duration_s);
   trial_settings.pieces = work_.pieces_;
+  trial_settings.expected_trials = settings.adaptive ? 0U : settings.trials;
   return trial_settings;
 }
 
@@ -386,7 +387,8 @@ void Evaluation::run_slice() noexcept {
     const std::uint32_t trial =
         adapts ? part.adaptive.next_trial(part.monte_carlo) : part.monte_carlo.next_trial();
     double value = 0.0;
-    if (trial < work_.stored_) {
+    const bool is_stored = trial < work_.stored_;
+    if (is_stored) {
       value = work_.store_[trial];
       work += kWorkOfStoredValue;
     } else if (is_helped(trial)) {
@@ -403,7 +405,7 @@ void Evaluation::run_slice() noexcept {
         ++work_.stored_;
       }
     }
-    note_root(value);
+    note_root(trial, value, is_stored);
     if (adapts) {
       part.adaptive.add(value, part.monte_carlo, store);
     } else {
@@ -453,8 +455,8 @@ void Evaluation::step_monte_carlo() noexcept {
     (void)fail(failure_of_trials(result.status, Stage::kMonteCarlo, part.trials.is_exhausted()));
     return;
   }
-  if (results_.settings.distribution == Distribution::kNormal) {
-    take_uncertainty(results_.uncertainty);  // These trials are the normal ones.
+  if (are_trials_normal()) {
+    take_uncertainty(results_.uncertainty);
   }
   results_.device_at_maximum = part.trials.device(result.trial_of_maximum);
   if (results_.settings.method == Method::kPaper) {
@@ -476,9 +478,14 @@ void Evaluation::step_guard() noexcept {
   }
 }
 
+/// Whether the trials of the paper's procedure are those of the uncertainty of E, too.
+bool Evaluation::are_trials_normal() const noexcept {
+  return results_.settings.distribution == Distribution::kNormal && !holds_sensitivity();
+}
+
 void Evaluation::end_trials() noexcept {
   results_.has_monte_carlo = true;
-  if (results_.settings.distribution == Distribution::kNormal) {
+  if (are_trials_normal()) {
     results_.uncertainty.guard = results_.guard;
     results_.uncertainty.is_done = true;
   }
@@ -492,8 +499,11 @@ void Evaluation::step_trend() noexcept {
       add_trend_point(results_.energy_v2s());
       return;
     }
+    const SearchSettings settings = search_settings(results_.settings, duration_s);
+    const bool is_too_much = search_cells(results_.model, settings) > kMostDefaultCells &&
+                             adapts_trend(results_.settings);
     const Status status =
-        work_.search_.start(results_.model, search_settings(results_.settings, duration_s));
+        is_too_much ? Status::kTooManyCells : work_.search_.start(results_.model, settings);
     if (!leaves_out(status)) {
       work_.trend_search_runs_ = is_well(status, Stage::kTrend, duration_s);
     }

@@ -368,7 +368,6 @@ void write_no_error(ReportWriter& out) noexcept {
 }
 
 void write_error_system(const EvaluationResults& results, ReportWriter& out) noexcept {
-  const double duration_s = results.settings.duration_s;
   const Peak& peak = results.peak;
   const SettlingTime& settling = results.settling_time;
   out.heading(ReportSection::kErrorSystem,
@@ -381,24 +380,8 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   }
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
   out.fixed(kMicro * peak.time_s, 2).text(" us").line();
-  out.label("5 % settling time");
-  if (!settling.found) {
-    out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
-  } else {
-    out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
-  }
-  if (duration_s < settling.time_s) {
-    const bool is_much = duration_s < kMuchShorter * settling.time_s;
-    out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
-        .text(is_much ? "  WARNING: T is much shorter" : "  Note: T is shorter")
-        .text(
-            " than the settling time, so the error has not developed within\n"
-            "  T. The paper takes T from the settling time: give a T of ");
-    constexpr int kDigits = 3;
-    const double least_ms = kMilli * settling.time_s;
-    const int decimals = decimals_of(least_ms, kDigits);
-    out.fixed(rounded_up(least_ms, decimals), decimals).text(" ms or more.\n");
-  }
+  write_settling_time(settling, out);
+  write_short_time(results.settings.duration_s, settling, out);
 }
 
 // Maximum energy
@@ -550,7 +533,7 @@ void write_trial_warnings(const TrialResults& trials, ReportWriter& out) noexcep
         .text("  WARNING: more signals than the trials have room for may be the worst within the\n")
         .text("  parameters' ranges. They take the best ")
         .integer(trials.branches.branches)
-        .text("; give smaller uncertainties.\n");
+        .text("; more may be worse.\n");
   }
   constexpr std::uint32_t kOnePercent = 100;
   if (trials.redraws > trials.result.trials / kOnePercent) {
@@ -558,7 +541,7 @@ void write_trial_warnings(const TrialResults& trials, ReportWriter& out) noexcep
         .text("  WARNING: ")
         .integer(trials.redraws)
         .text(" draws of the parameters were no device and were made again. E is not\n")
-        .text("  normal there; give smaller uncertainties.\n");
+        .text("  normal there; check the uncertainties.\n");
   }
 }
 
@@ -602,7 +585,7 @@ void write_left_out(const EvaluationResults& results, ReportWriter& out) noexcep
     return;
   }
   out.part(ReportPart::kNote).text("  Note: left out, as they need more than ");
-  out.integer(kMaxSwitches).text(" switches or ").integer(kMaxCells).text(" cells: T =");
+  out.integer(kMaxSwitches).text(" switches or ").integer(kMostDefaultCells).text(" cells: T =");
   bool is_first = true;
   for (std::size_t i = 0; i < results.settings.trend_count; ++i) {
     if ((results.trend_left_out >> i & 1U) != 0) {

@@ -13,6 +13,8 @@ constexpr double kPercent = 100.0;
 constexpr std::size_t kTimesPerLine = 6;
 constexpr std::size_t kNameWidth = 44;
 constexpr std::size_t kNumberWidth = 14;
+constexpr std::size_t kWidthOfRest = 6;  // " to 0."
+constexpr int kMostPlain = 9;
 constexpr int kMostDecimals = 12;
 
 double power_of_ten(int exponent) noexcept {
@@ -27,14 +29,24 @@ struct Row {
   const char* name;
   bool is_marked;
   double percent;
-  double expanded;  ///< U in percent; 0 if there is none.
+  bool has_u;
+  double expanded;  ///< U in percent.
   bool has_bound;
   double bound_percent;
+  bool is_one_sided;          ///< The interval stands in the place of U.
+  CoverageInterval interval;  ///< In percent.
 };
+
+/// What U justifies, but two digits of the number at least.
+int decimals_beside(double percent, double expanded) noexcept {
+  constexpr int kDigits = 2;
+  const int of_u = decimals_of(expanded, kDigits);
+  const int least = decimals_of(percent, kDigits);
+  return least > of_u && percent > 0.0 ? least : of_u;
+}
 
 /// In so many decimals; a number so small that the column has no room for them has an exponent.
 void write_cell(double percent, int decimals, int digits, ReportWriter& out) noexcept {
-  constexpr int kMostPlain = 9;
   out.cell(kNumberWidth);
   if (percent == 0.0) {
     out.integer(0);
@@ -45,21 +57,35 @@ void write_cell(double percent, int decimals, int digits, ReportWriter& out) noe
   }
 }
 
-void write_row(const Row& row, ReportWriter& out) noexcept {
+/// U, or the interval in its place.
+void write_expanded(const Row& row, int decimals, ReportWriter& out) noexcept {
   constexpr int kDigitsOfU = 2;
+  if (!row.has_u) {
+    out.cell(kNumberWidth).text("-");
+  } else if (!row.is_one_sided) {
+    write_cell(row.expanded, decimals, kDigitsOfU, out);
+  } else {
+    // Outwards, both in the decimals of the far end.
+    const int of_end = decimals_of(row.interval.high, kDigitsOfU);
+    const double low = rounded_down(row.interval.low, of_end);
+    const double high = rounded_up(row.interval.high, of_end);
+    const std::size_t beside = kWidthOfRest + static_cast<std::size_t>(of_end);
+    out.cell(beside < kNumberWidth ? kNumberWidth - beside : 0);
+    low > 0.0 ? out.fixed(low, of_end) : out.integer(0);
+    out.text(" to ").fixed(high, of_end);
+  }
+}
+
+void write_row(const Row& row, ReportWriter& out) noexcept {
   constexpr int kDigitsAlone = 4;
   constexpr double kHalfOfLastDigit = 5e-4;
-  const bool has_u = row.expanded > 0.0;
-  const int decimals =
-      has_u ? decimals_of(row.expanded, kDigitsOfU) : decimals_of(row.percent, kDigitsAlone);
+  const bool has_digits = row.has_u && row.expanded > 0.0 && !row.is_one_sided;
+  const int decimals = has_digits ? decimals_beside(row.percent, row.expanded)
+                                  : decimals_of(row.percent, kDigitsAlone);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(kNameWidth - 2).text(row.name).text(row.is_marked ? " *" : "  ");
   write_cell(row.percent, decimals, kDigitsAlone, out);
-  if (has_u) {
-    write_cell(row.expanded, decimals, kDigitsOfU, out);
-  } else {
-    out.cell(kNumberWidth).text("-");
-  }
+  write_expanded(row, decimals, out);
   if (row.has_bound) {
     const int of_bound = decimals_of(row.bound_percent, kDigitsAlone);
     const bool is_tiny = of_bound == kMostDecimals;
@@ -74,13 +100,20 @@ void write_row(const Row& row, ReportWriter& out) noexcept {
 
 Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
            const FigureResults& figure) noexcept {
-  const EnergyUncertainty& known = figure.uncertainty;
+  const bool has_u = figure.uncertainty.exists();
+  const double percent = results.percent_of(figure.energy_v2s);
+  const double expanded = has_u ? kCoverageFactor * figure.uncertainty.u_percent : 0.0;
+  const CoverageInterval interval =
+      has_u ? results.interval_percent_of(figure) : CoverageInterval{};
   return {name,
           is_marked,
-          results.percent_of(figure.energy_v2s),
-          known.exists() ? kCoverageFactor * known.u_percent : 0.0,
+          percent,
+          has_u,
+          expanded,
           figure.has_bound,
-          results.percent_of(figure.bound_v2s)};
+          results.percent_of(figure.bound_v2s),
+          has_u && is_one_sided(percent, expanded, interval),
+          interval};
 }
 
 void write_papers_rows(const EvaluationResults& results, bool is_marked,
@@ -94,16 +127,28 @@ void write_papers_rows(const EvaluationResults& results, bool is_marked,
     const EnergyUncertainty& known = results.uncertainty;
     const bool has_u = known.exists() && is_finite(known.u_percent);
     const bool is_error = criterion == Criterion::kIntegralSquareError;
-    write_row(
-        {is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)", is_marked,
-         results.percent_of(energy), has_u ? kCoverageFactor * known.u_percent : 0.0,
-         results.has_bound, results.percent_of(results.bound_v2s)},
-        out);
+    write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
+               is_marked,
+               results.percent_of(energy),
+               has_u,
+               has_u ? kCoverageFactor * known.u_percent : 0.0,
+               results.has_bound,
+               results.percent_of(results.bound_v2s),
+               false,
+               {}},
+              out);
   }
   if (results.ideal.exists() &&
       (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {
-    write_row({"The same of an ideal sensor, K = S", false,
-               results.percent_of(results.ideal.energy_v2s), 0.0, false, 0.0},
+    write_row({"The same of an ideal sensor, K = S",
+               false,
+               results.percent_of(results.ideal.energy_v2s),
+               false,
+               0.0,
+               false,
+               0.0,
+               false,
+               {}},
               out);
   }
 }
@@ -168,13 +213,16 @@ void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
   out.integer(guard.disagreements);
   out.text(guard.disagreements == 1 ? " disagreement" : " disagreements").line();
   if (guard.disagreements > 0) {
-    out.part(ReportPart::kWarning).text("  WARNING: in these trials a search found up to ");
-    out.general(kPercent * static_cast<double>(guard.largest_excess), 3)
-        .text(
-            " % more energy with another signal than\n"
-            "  the best ones at the estimates and the corners of the parameters' ranges. Maximum "
-            "and\n"
-            "  intervals are too low; give smaller uncertainties.\n");
+    out.part(ReportPart::kWarning).text("  WARNING: ");
+    if (guard.largest_excess > 0.0F) {
+      out.text("in these trials a search found up to ");
+      out.general(kPercent * static_cast<double>(guard.largest_excess), 3)
+          .text(
+              " % more energy with another signal:\n"
+              "  maximum and intervals are too low by up to that.\n");
+    } else {
+      out.text("in these trials the search has failed: another signal may have more energy.\n");
+    }
   }
 }
 
@@ -206,6 +254,23 @@ void write_switching_times(std::size_t switches, Span<const double> times_s,
   out.line();
 }
 
+/// The one that was asked for leads. @returns Whether one has an interval in the place of U.
+bool write_band_rows(const EvaluationResults& results, bool is_marked, ReportWriter& out) noexcept {
+  const bool is_band_first = results.settings.delay_choice == DelayChoice::kNone;
+  bool any = false;
+  for (const bool is_band : {is_band_first, !is_band_first}) {
+    const FigureResults& figure = is_band ? results.band : results.matched;
+    if (figure.exists()) {
+      const Row row =
+          row_of(is_band ? "In band, with its delay" : "In band, constant delay taken out",
+                 is_marked, results, figure);
+      write_row(row, out);
+      any = any || row.is_one_sided;
+    }
+  }
+  return any;
+}
+
 void write_figures(const EvaluationResults& results, const ReportContext& context,
                    ReportWriter& out) noexcept {
   const bool marks = context.mark != nullptr;
@@ -217,12 +282,7 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   out.cell(kNumberWidth).text("found");
   out.cell(kNumberWidth).text("U (k = 2)");
   out.cell(kNumberWidth).text("none exceeds").line();
-  if (results.matched.exists()) {
-    write_row(row_of("In band, constant delay taken out", marks, results, results.matched), out);
-  }
-  if (results.band.exists()) {
-    write_row(row_of("In band, with its delay", marks, results, results.band), out);
-  }
+  const bool is_one_sided = write_band_rows(results, marks, out);
   write_papers_rows(results, marks, out);
   if (!results.band.exists()) {
     write_refusal("in band", results.band, out);
@@ -233,6 +293,11 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
       .text(
           "  In band: what the sensor does wrong within the filter's band; 0 for an ideal sensor\n"
           "  with S = G, the filter's gain.\n");
+  if (is_one_sided) {
+    out.text("  x to y: where the figure is with ");
+    out.general(kPercent * results.settings.probability, 6);
+    out.text(" %. It is one-sided, so that +-U is no measure.\n");
+  }
   if (results.settings.criterion == Criterion::kIntegralSquareError) {
     out.text(
         "  The paper's figure also holds the filter's delay and what the filter keeps out: "
@@ -247,6 +312,31 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   }
 }
 
+void write_settling_time(const SettlingTime& settling, ReportWriter& out) noexcept {
+  out.label("5 % settling time");
+  if (!settling.found) {
+    out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
+  } else {
+    out.fixed(kMilli * settling.time_s, 6).text(" ms").line();
+  }
+}
+
+void write_short_time(double duration_s, const SettlingTime& settling, ReportWriter& out) noexcept {
+  if (!(duration_s < settling.time_s)) {
+    return;
+  }
+  const bool is_much = duration_s < kMuchShorter * settling.time_s;
+  out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
+      .text(is_much ? "  WARNING: T is much shorter" : "  Note: T is shorter")
+      .text(
+          " than the settling time, so the error has not developed within\n"
+          "  T. The paper takes T from the settling time: give a T of ");
+  constexpr int kDigits = 3;
+  const double least_ms = kMilli * settling.time_s;
+  const int decimals = decimals_of(least_ms, kDigits);
+  out.fixed(rounded_up(least_ms, decimals), decimals).text(" ms or more.\n");
+}
+
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept {
   if (!results.band.exists()) {
     return;
@@ -254,12 +344,23 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
   out.heading(ReportSection::kInBand,
               "IN-BAND ERROR (at the estimates; energy of the filter on sensor minus G x)");
   write_figure(results, results.band, out);
+  if (results.settings.criterion != Criterion::kInBandError) {
+    // A T that is somewhat shorter is what the paper has, too.
+    const SettlingTime& settling = results.band_settling;
+    if (results.settings.duration_s < kMuchShorter * settling.time_s) {
+      write_settling_time(settling, out);
+      write_short_time(results.settings.duration_s, settling, out);
+    }
+  }
   if (results.matched.exists()) {
     const FigureResults& matched = results.matched;
     out.line();
     out.label("Delay taken out").general(kMicro * matched.delay_s, 5).text(" us");
     const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
     out.text(is_given ? ", as given" : ", beta/(pi f0), the sensor's at low frequency").line();
+    if (row_of("", false, results, matched).is_one_sided) {
+      out.indent().text("the same in all trials: what their own differs by counts as error").line();
+    }
     out.label("The true delay").text("may change the rms by ");
     out.general(matched.epsilon_percent, 2).text(" % of S a").line();
     write_figure(results, matched, out);
@@ -297,8 +398,13 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   if (!known.exists()) {
     out.part(ReportPart::kWarning)
         .text("  WARNING: draws of the parameters leave what a device may be 65 times in a row;\n")
-        .text("  E has no uncertainty. Give smaller uncertainties.\n");
+        .text("  E has no uncertainty. Check those of the parameters and their units.\n");
     return;
+  }
+  if (results.settings.criterion == Criterion::kInBandError &&
+      results.settings.gain_mode != GainMode::kFixed) {
+    out.part(ReportPart::kText)
+        .text("  As above the gain follows S: an error of S is one of gain, and left out.\n");
   }
   out.label("Mean of E").scientific(known.mean_v2s, 8).text(" V^2 s over ");
   out.integer(known.trials).text(" trials").line();
@@ -308,12 +414,6 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   write_interval("Shortest interval", known.shortest, probability, out);
   write_guard(known.guard, out);
   write_rough_trials(known.rough_trials, known.rough_part, out);
-  if (results.settings.criterion == Criterion::kInBandError &&
-      results.settings.gain_mode == GainMode::kAuto) {
-    out.part(ReportPart::kText)
-        .text("  Here and below G stays at the estimate of S, so an error of S is one in band; ")
-        .text("above, G follows S.\n");
-  }
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
     out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();
@@ -321,7 +421,7 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   if (known.redraws > known.trials / kOnePercent) {
     out.part(ReportPart::kWarning)
         .text(
-            "  WARNING: that is more than 1 %, so S, f0 and beta are not normal. Give smaller "
+            "  WARNING: that is more than 1 %, so S, f0 and beta are not normal. Check their "
             "uncertainties.\n");
   }
 }

@@ -22,6 +22,10 @@ double rounded_down(double value, int decimals) noexcept;
 void write_figures(const EvaluationResults& results, const ReportContext& context,
                    ReportWriter& out) noexcept;
 
+/// "5 % settling time", and what a T shorter than that is worth.
+void write_settling_time(const SettlingTime& settling, ReportWriter& out) noexcept;
+void write_short_time(double duration_s, const SettlingTime& settling, ReportWriter& out) noexcept;
+
 /// The in-band errors, in V^2 s and with their signals.
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept;
 

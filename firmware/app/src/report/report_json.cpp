@@ -318,7 +318,7 @@ void write_figure_uncertainty(const EvaluationResults& results, const EnergyUnce
                               JsonWriter& json) noexcept {
   if (!known.exists()) {
     for (const char* name : {"u", "U", "interval", "shortest", "u_percent", "U_percent",
-                             "interval_percent", "disagreements"}) {
+                             "interval_percent", "shortest_percent", "disagreements"}) {
       json.null(name);
     }
     return;
@@ -330,6 +330,7 @@ void write_figure_uncertainty(const EvaluationResults& results, const EnergyUnce
   json.number("u_percent", known.u_percent);
   json.number("U_percent", kCoverageFactor * known.u_percent);
   write_interval_in_percent("interval_percent", results, known.symmetric, json);
+  write_interval_in_percent("shortest_percent", results, known.shortest, json);
   write_disagreements(known.guard, json);
 }
 
@@ -359,6 +360,8 @@ void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
   }
   json.open("band");
   write_figure(results, results.band, json);
+  write_number_or_null("settling_time_s", results.band_settling.found, results.band_settling.time_s,
+                       json);
   if (matched.exists()) {
     json.open("matched");
     json.words("delay_mode",
@@ -418,7 +421,14 @@ void write_warnings(const EvaluationResults& results, const ReportContext& conte
   json.open("warnings", '[');
   for (const Warning warning : kWarnings) {
     if (holds(warning, results, context)) {
-      write_warning(about(warning), words_of(warning), json);
+      json.open(nullptr);
+      json.words("about", about(warning));
+      json.words("text", words_of(warning));
+      const double least_s = least_time_s(warning, results);
+      if (least_s > 0.0) {
+        json.number("least_time_s", least_s);
+      }
+      json.close();
     }
   }
   json.close(']');

@@ -22,8 +22,8 @@ bool has_few_trials(const EvaluationResults& results) noexcept {
          (rule == 0 || results.trials.result.trials < rule);
 }
 
-bool is_short(const EvaluationResults& results) noexcept {
-  return results.settings.duration_s < kMuchShorter * results.settling_time.time_s;
+bool is_short(Warning warning, const EvaluationResults& results) noexcept {
+  return results.settings.duration_s < kMuchShorter * least_time_s(warning, results);
 }
 
 bool is_low(const EvaluationResults& results) noexcept {
@@ -82,7 +82,8 @@ bool holds(Warning warning, const EvaluationResults& results,
     case Warning::kLowFrequency:
       return is_low(results);
     case Warning::kShortTime:
-      return is_short(results);
+    case Warning::kShortInBand:
+      return is_short(warning, results);
     case Warning::kFewTrials:
       return has_few_trials(results);
     case Warning::kNotStable:
@@ -122,6 +123,8 @@ const char* about(Warning warning) noexcept {
     case Warning::kLowFrequency:
     case Warning::kShortTime:
       return "energy";
+    case Warning::kShortInBand:
+      return "band";
     case Warning::kFewTrials:
     case Warning::kNotStable:
     case Warning::kGuard:
@@ -151,6 +154,8 @@ ReportSection place_of(Warning warning) noexcept {
       return ReportSection::kFit;
     case Warning::kShortTime:
       return ReportSection::kErrorSystem;
+    case Warning::kShortInBand:
+      return ReportSection::kInBand;
     case Warning::kFewTrials:
     case Warning::kNotStable:
     case Warning::kGuard:
@@ -168,6 +173,15 @@ ReportSection place_of(Warning warning) noexcept {
       break;
   }
   return ReportSection::kMeasurement;
+}
+
+double least_time_s(Warning warning, const EvaluationResults& results) noexcept {
+  if (warning == Warning::kShortTime) {
+    return results.settling_time.time_s;
+  }
+  const bool is_other = results.settings.criterion != Criterion::kInBandError;
+  const bool has_row = is_other && results.band.exists();
+  return warning == Warning::kShortInBand && has_row ? results.band_settling.time_s : 0.0;
 }
 
 std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
@@ -198,6 +212,7 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kLowFrequency:
       return "f0 is below the filter's cutoff; check that the frequencies are in Hz";
     case Warning::kShortTime:
+    case Warning::kShortInBand:
       return "T is much shorter than the settling time; give at least the settling time";
     case Warning::kFewTrials:
       return "fewer trials than rule (3), 1e4/(1 - p), asks for";
@@ -211,10 +226,11 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kRedrawn:
       return "more than 1 % of the draws were no device and were made again: E is not normal there";
     case Warning::kNoUncertainty:
-      return "the uncertainties leave what a device may be, so E has none; give smaller ones";
+      return "the uncertainties leave what a device may be, so E has none; check them and their "
+             "units";
     case Warning::kRough:
       return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
-             "second digit; give a shorter T or smaller uncertainties";
+             "second digit; give a shorter T";
     case Warning::kEnded:
     case Warning::kDataSheet:
     case Warning::kChange:

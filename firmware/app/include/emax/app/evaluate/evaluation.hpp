@@ -148,7 +148,9 @@ class Evaluation {
   void begin_cut_range() noexcept;
   void step_cut_range() noexcept;
   void begin_trials() noexcept;
-  void note_root(double energy_v2s) noexcept;
+  void note_root(std::uint32_t trial, double energy_v2s, bool is_stored) noexcept;
+  bool holds_sensitivity() const noexcept;
+  bool are_trials_normal() const noexcept;
   void step_prediction() noexcept;
   void step_adaptive() noexcept;
   void begin_monte_carlo(std::uint32_t trials) noexcept;
@@ -159,6 +161,7 @@ class Evaluation {
   void begin_figure(Stage stage) noexcept;
   void begin_uncertainty() noexcept;
   void step_figure() noexcept;
+  void step_figure_settling() noexcept;
   void step_figure_search() noexcept;
   void step_figure_bound() noexcept;
   void step_figure_prediction() noexcept;

@@ -32,6 +32,13 @@ struct Device {
 
 enum class Source : std::uint8_t { kPoints, kModel };
 
+/// T shorter than this part of the settling time is much shorter: the error has then hardly begun.
+inline constexpr double kMuchShorter = 0.4;
+
+/// More cells than a length of the default trend may take: a search on four times as many takes a
+/// minute of a PC. Who gives lengths of his own has all the room there is.
+inline constexpr std::size_t kMostDefaultCells = kMaxCells < 16384 ? kMaxCells : 16384;
+
 /// The largest energy for one duration of the trend.
 struct TrendPoint {
   double duration_s = 0.0;
@@ -80,10 +87,20 @@ struct EnergyUncertainty {
   double u_v2s = 0.0;
   CoverageInterval symmetric;  ///< In V^2 s.
   CoverageInterval shortest;
-  double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a) over the trials.
+  double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a), S being each trial's.
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
 };
+
+/// @returns Whether +-U says little of a figure that the trials leave mostly on one side, and an
+/// interval has to stand in its place: U is above the figure, or one end of the interval is more
+/// than twice as far from it as the other.
+///
+/// @param[in] interval That holds the figure.
+bool is_one_sided(double figure, double expanded, const CoverageInterval& interval) noexcept;
+
+/// @returns The interval, widened to hold the figure: no less likely.
+CoverageInterval widened(const CoverageInterval& interval, double figure) noexcept;
 
 /// A largest energy beside that of the criterion: an in-band error.
 ///
@@ -97,6 +114,7 @@ struct FigureResults {
   bool is_done = false;         ///< Looked for, with its bound.
   Status status = Status::kOk;  ///< With `is_done`; unless it is kOk, why there is none.
   bool has_bound = false;
+  bool is_short = false;         ///< There is none, and T is much shorter than its settling time.
   std::uint16_t switches = 0;    ///< Of the signal; the first kTimes are kept.
   double energy_v2s = 0.0;       ///< With a delay that of the continued filter.
   double rounding_v2s = 0.0;     ///< What rounding may have changed of it.
@@ -163,6 +181,7 @@ struct EvaluationResults {
   double limit_mps2 = 0.0;  ///< a.
   Peak peak;
   SettlingTime settling_time;     ///< To 5 % of the peak.
+  SettlingTime band_settling;     ///< The same of the in-band error with its delay.
   double absolute_error_v = 0.0;  ///< The largest |y(t)| of any signal within +-a of this T.
   double bound_v2s = 0.0;         ///< No signal within +-a of this T has more; with `has_bound`.
   double cut_low_v2s = 0.0;       ///< With `has_cut_range`: the energies over the dampings that
@@ -237,6 +256,9 @@ struct EvaluationResults {
   double xi() const noexcept { return maximum.energy / settings.duration_s; }
   /// @returns 100 sqrt(E/T)/(S a) of an energy, S being the estimate; not a number below 0.
   double percent_of(double energy_v2s) const noexcept;
+  /// @returns The shortest interval of a figure that has an uncertainty, widened to hold the
+  /// figure, in percent as by `percent_of()`.
+  CoverageInterval interval_percent_of(const FigureResults& figure) const noexcept;
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
   double rms_error_v() const noexcept;
   /// @returns The output y(t) for the signal found with its limit a, in V.

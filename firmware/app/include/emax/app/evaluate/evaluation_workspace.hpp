@@ -51,6 +51,8 @@ class EvaluationWorkspace {
   struct FigurePart : InPlace {
     ModalModel model;
     EnergyBound bound;
+    PeakSearch peak;
+    SettlingSearch settling;
   };
   // Lies in the grid's memory while trials start from it.
   struct FigureModel : InPlace {
@@ -78,7 +80,15 @@ class EvaluationWorkspace {
     TrialPart trial;
   };
 
-  enum class FigurePhase : std::uint8_t { kSearch, kBound, kPrediction, kTrials, kGuard, kEnd };
+  enum class FigurePhase : std::uint8_t {
+    kSettling,
+    kSearch,
+    kBound,
+    kPrediction,
+    kTrials,
+    kGuard,
+    kEnd
+  };
   static_assert(!kHasDefaultCapacities ||
                 sizeof(FigureModel) <= sizeof(double) * kWorkspaceNumbers);
 

@@ -17,6 +17,7 @@ enum class Warning : std::uint8_t {
   kDisagreement,   ///< u by formula and u by draws differ by more than kDisagreement.
   kLowFrequency,   ///< f0 is below the filter's cutoff.
   kShortTime,      ///< T is much shorter than the settling time.
+  kShortInBand,    ///< The same of the in-band error, where it is not the criterion.
   kFewTrials,      ///< Fewer than rule (3) asks for.
   kNotStable,      ///< The adaptive procedure ended on its limit.
   kGuard,          ///< A search beats its trial.
@@ -32,11 +33,11 @@ enum class Warning : std::uint8_t {
 };
 
 inline constexpr Warning kWarnings[] = {
-    Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
-    Warning::kLowFrequency,  Warning::kShortTime,   Warning::kFewTrials,     Warning::kNotStable,
-    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn, Warning::kRedrawn,
-    Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,   Warning::kEnded,
-    Warning::kDataSheet,     Warning::kChange,
+    Warning::kFit,          Warning::kOpenDamping,   Warning::kOnlyS,       Warning::kDisagreement,
+    Warning::kLowFrequency, Warning::kShortTime,     Warning::kShortInBand, Warning::kFewTrials,
+    Warning::kNotStable,    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn,
+    Warning::kRedrawn,      Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,
+    Warning::kEnded,        Warning::kDataSheet,     Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
@@ -48,9 +49,12 @@ bool holds(Warning warning, const EvaluationResults& results,
 bool contradicts(Warning warning, const SweepResults& sweep) noexcept;
 const char* words_of_contradiction(Warning warning) noexcept;
 
-/// @returns "fit", "damping", "fit_draws", "energy", "monte_carlo", "uncertainty" or
+/// @returns "fit", "damping", "fit_draws", "energy", "band", "monte_carlo", "uncertainty" or
 /// "measurement".
 const char* about(Warning warning) noexcept;
+
+/// @returns The T in s that a warning of a short one asks for, the settling time; 0 for all others.
+double least_time_s(Warning warning, const EvaluationResults& results) noexcept;
 
 /// @returns Where in the report it is said at length.
 ReportSection place_of(Warning warning) noexcept;
@@ -67,8 +71,5 @@ inline constexpr double kDisagreement = 0.2;
 
 /// Part of u(E) that its trials may be off by: more is a warning.
 inline constexpr float kMostRough = 0.01F;
-
-/// T shorter than this part of the settling time is much shorter.
-inline constexpr double kMuchShorter = 0.5;
 
 }  // namespace emax::app
