@@ -5,9 +5,10 @@ usage: in_band_picture.py table PROGRAM TABLE.csv       asks the program for eac
 """
 
 import csv
-import json
 import subprocess
 import sys
+
+import emax
 
 DAMPINGS = ["0.02", "0.1", "0.3", "0.7"]
 CUTOFF_HZ = 1000
@@ -18,9 +19,8 @@ HEAD = ["f0/fc", "beta", "in_band_percent", "matched_percent"]
 
 def figures(program: str, ratio: float, damping: str) -> tuple[float, float | None]:
     """Both in-band figures in percent of S a, of order 10 and T = 2 ms; None where the delay cannot be taken out."""
-    command = [program, "report", "--model", f"1,{ratio * CUTOFF_HZ:g},{damping}", "--criterion", "band",
-               "--reference-delay", "none", "--trend", "none", "--json"]
-    band = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["band"]
+    model = f"1,{ratio * CUTOFF_HZ:g},{damping}"
+    band = emax.run_report(program=program, model=model, criterion="band", reference_delay="none", trend="none")["band"]
     return band["rms_percent"], None if band["matched"] is None else band["matched"]["rms_percent"]
 
 

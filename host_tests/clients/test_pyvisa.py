@@ -7,7 +7,6 @@ PROGRAM is always the one for this PC: its report is what every instrument must 
 """
 
 import os
-import subprocess
 import sys
 import time
 import unittest
@@ -15,6 +14,7 @@ import warnings
 
 import pyvisa
 
+import emax
 from instruments import BoardImage, HostProgram
 
 MODEL = "1.037,4073,0.3182,0.003,6,0.0004"
@@ -58,7 +58,7 @@ class ClientTest(unittest.TestCase):
         return content
 
     def report(self, *options: str) -> bytes:
-        return subprocess.run([PROGRAM, "report", *options], check=True, stdout=subprocess.PIPE).stdout
+        return emax.run("report", *options, program=PROGRAM)
 
 
 class WholeJob(ClientTest):

@@ -19,6 +19,7 @@ from instruments import HostProgram
 
 PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
 README = (PROJECT / "README.md").read_text()
+CLAIMS = (PROJECT / "host_tests/reference/README.md").read_text(encoding="utf-8")
 SHOWN = PROJECT / "firmware/desk/pictures/readme"
 ADDRESS = "TCPIP::127.0.0.1::5025::SOCKET"
 
@@ -92,7 +93,7 @@ class ReadmeTest(unittest.TestCase):
 
     def test_energy_of_each_order(self):
         start = "build/host/emax report --model 1.037,4073,0.3182 --trend none --order"
-        table = README.split(f"`{start} L`:")[1].split("\n\n")[1].splitlines()
+        table = CLAIMS.split(f"`{start} L`:")[1].split("\n\n")[1].splitlines()
         orders, energies, switches = [[cell.strip() for cell in table[row].split("|")[2:-1]] for row in [0, 2, 3]]
         self.assertEqual(orders, [str(order) for order in range(1, 16)])
         for order, energy, count in zip(orders, energies, switches, strict=True):
@@ -127,6 +128,22 @@ class ReadmeTest(unittest.TestCase):
         drawn = self.directory / "in_band.svg"
         in_band_picture.draw(str(table), str(drawn))
         self.assert_shown("in_band.svg", drawn)
+
+    def test_links_lead_somewhere(self):
+        """Every file that a README links to is there, and so is the heading."""
+        for readme in [path for path in sorted(PROJECT.rglob("README.md")) if "build" not in path.relative_to(PROJECT).parts]:
+            text = re.sub(r"^```.*?^```", "", readme.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+            for link in re.findall(r"\]\(([^)\s]+)\)", text):
+                name, _, heading = link.partition("#")
+                if re.match("[a-z]+:", link) or name.startswith("build/"):
+                    continue
+                with self.subTest(readme=str(readme.relative_to(PROJECT)), link=link):
+                    target = readme.parent / name if name else readme
+                    self.assertTrue(target.exists())
+                    if heading:
+                        titles = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
+                        anchors = [re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles]
+                        self.assertIn(heading, anchors)
 
     def test_pyvisa(self):
         command, printed = self.session("python3 example.py ")

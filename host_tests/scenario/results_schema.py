@@ -53,10 +53,12 @@ def faults(value, schema=None, path="results") -> list[str]:
     if isinstance(value, dict):
         members = schema["properties"]
         found += [f"{path}: no {name}" for name in schema["required"] if name not in value]
-        found += [f"{path}: {name} is not in the schema" for name in value if name not in members]
+        others = schema["additionalProperties"]
         for name in value:
-            if name in members:
-                found += faults(value[name], members[name], f"{path}.{name}")
+            if name in members or others is not False:
+                found += faults(value[name], members.get(name, others), f"{path}.{name}")
+            else:
+                found.append(f"{path}: {name} is not in the schema")
     if isinstance(value, list):
         for number, element in enumerate(value):
             found += faults(element, schema["items"], f"{path}[{number}]")

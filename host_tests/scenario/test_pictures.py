@@ -250,6 +250,27 @@ class Pictures(PictureTest, ProgramTest):
             self.assertAlmostEqual(amplitude, float(row["model_amplitude"]), delta=1e-10)
             self.assertAlmostEqual(phase, float(row["model_phase_deg"]), delta=1e-8)
 
+    def test_deviations_have_the_uncertainties_of_each_point_alone(self):
+        # U of the amplitudes is 0.5 % for all of them, and more for each; the axis ends 10 % beyond the longest bar.
+        table = DATA / "devices/piezo_a.csv"
+        self.report("--points", table, "--reference-uncertainty", "0.5", *QUICK)
+        with open(self.out("frequency_response.csv"), encoding="ascii") as file:
+            rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        longest = 0.0
+        for row in rows:
+            own = math.sqrt(row["u_amplitude"] ** 2 - (0.005 * row["amplitude"]) ** 2)
+            self.assertAlmostEqual(row["u_common"], 0.005 * row["amplitude"], delta=1e-9)
+            longest = max(longest, (abs(row["amplitude"] - row["model_amplitude"]) + own) / row["model_amplitude"])
+        script = self.content("pictures.gp")
+        end = float(re.search(r"^set yrange \[-[\d.e+-]+:([\d.e+-]+)\]\nplot", script, re.MULTILINE)[1])
+        scale = float(re.search(r"^percent = (.*)$", script, re.MULTILINE)[1])
+        self.assertAlmostEqual(end / (1.1 * longest * scale), 1.0, delta=1e-6)
+        self.assertLess(100 * end / scale, 0.4, "in %: the common part is not in it")
+        self.assertIn("shaded: common to all amplitudes, U = 0.5 %", texts_of(self.out("frequency_response.svg")))
+        # Without a common part there is no band.
+        self.report("--points", table, *QUICK)
+        self.assertNotIn("common", self.content("pictures.gp"))
+
     def test_marks_are_where_the_results_are(self):
         self.report(*MODEL, *TREND, "--probability", "0.9")
         results, script = json.loads(self.content("results.json")), self.content("pictures.gp")
@@ -275,7 +296,7 @@ class Pictures(PictureTest, ProgramTest):
             numbers = [text for text in texts_of(self.out(f"{name}.svg")) if re.match(r"[-−]\d", text)]
             self.assertEqual([text for text in numbers if text.startswith("-")], [], name)
             self.assertEqual(numbers != [], name not in ["histogram", "trend"], name)
-        self.assertTrue(any("V² · T − 0.0030" in text for text in texts_of(self.out("trend.svg"))))
+        self.assertTrue(any(re.search("V² · T − 3\\.0\\d × 10⁻³ V² s", text) for text in texts_of(self.out("trend.svg"))))
 
     def test_key_is_not_over_the_line(self):
         for name, is_falling in [("ten milliseconds", False), ("energy difference below 0", True)]:
@@ -593,6 +614,11 @@ class Page(PageTest, ProgramTest):
                 self.open()
                 shown = iter(self.browser.evaluate("document.body.textContent").split())
                 report = self.content("report.txt").replace("^2", "²").replace("+-", "±")
+                report = re.sub(r"(?<=\d)e([+-])0*(\d+)", lambda m: f" × 10{'−' if m[1] == '-' else ''}{m[2]}", report)
+                # The budget, which is long, is at the end.
+                budget = re.search(r"  Uncertainty budget in the manner(?:.*\n)*?(?=\nFIT\n)", report)
+                if budget is not None:
+                    report = report.replace(budget[0], "") + budget[0]
                 # Every word in this order, but for headings, which are capitals in the text. Cells touch in a page.
                 words = [word for word in report.split() if not word.isupper() or any(c.isdigit() for c in word)]
                 page = " ".join(shown)
@@ -608,8 +634,10 @@ class Page(PageTest, ProgramTest):
         tables = self.browser.evaluate(
             "[...document.querySelectorAll('table.numbers')].map(table => [...table.rows].map(row => row.cells.length))"
         )
-        # Figures, budget, fit, trend.
-        self.assertEqual(tables, [[4] * 5, [10] * 44, [6] * 4, [3] * 6])
+        # Figures, fit, trend, budget.
+        self.assertEqual(tables, [[4] * 5, [6] * 4, [3] * 6, [10] * 44])
+        shown = "[...document.querySelectorAll('table.numbers')].map(table => table.checkVisibility())"
+        self.assertEqual(self.browser.evaluate(shown), [True, True, True, False])
         figures = self.browser.evaluate(
             "[...document.querySelectorAll('figure')].map("
             "figure => [figure.parentElement.id, figure.querySelector('figcaption').textContent.length > 40])"
@@ -630,15 +658,30 @@ class Page(PageTest, ProgramTest):
         percent = 100 * energy["rms"] / (1.037 * 1.037)
         # Of the text; what that says is looked at among the figures.
         U = re.search(r"The paper's figure, sqrt\(E/T\) +\S+ +(\S+) ", self.content("report.txt")).group(1)
-        self.assertEqual(headline[2], f"{percent:.2f} % ± {U} % of S a; an ideal sensor: "
-                                      f"{results['ideal']['rms_percent']:.4g} %")
-        self.assertEqual(headline[3], f"{1e3 * energy['E']:.4f} × 10−3 V² s")
-        self.assertEqual(headline[4], f"{1e3 * known['u']:.4f} × 10−3 V² s")
-        self.assertEqual(headline[5], f"{1e3 * known['U']:.4f} × 10−3 V² s")
-        low, high = (f"{1e3 * value:.4f}" for value in known["interval"])
-        self.assertEqual(headline[6], f"{low} to {high} × 10−3 V² s")
-        self.assertEqual(headline[7], f"{math.ceil(1e7 * energy['bound']) / 1e4:.4f} × 10−3 V² s")  # Not below it.
-        self.assertEqual(headline[8], f"{1e3 * results['monte_carlo']['E_max']:.4f} × 10−3 V² s")
+        self.assertEqual(headline[2], f"{percent:.2f} % ± {U} % of S a")
+        self.assertEqual(headline[3], f"{results['ideal']['rms_percent']:.4g} % of S a")
+        # U is 2.2e-5 V^2 s: two digits of it are three decimals here.
+        self.assertEqual(headline[4], f"({1e3 * energy['E']:.3f} ± {1e3 * known['U']:.3f}) × 10−3 V² s")
+        low, high = (f"{1e3 * value:.3f}" for value in known["interval"])
+        self.assertEqual(headline[5], f"{low} to {high} × 10−3 V² s")
+        self.assertEqual(headline[6], f"{math.ceil(1e7 * energy['bound']) / 1e4:.4f} × 10−3 V² s")  # Not below it.
+        self.assertEqual(headline[7], f"{1e3 * results['monte_carlo']['E_max']:.3f} × 10−3 V² s")
+        self.assertEqual(len(headline), 8)
+
+    def test_the_figure_that_decides_is_the_largest(self):
+        self.report(*MODEL, *QUICK)
+        self.open()
+        sizes = self.browser.evaluate(
+            "[...document.querySelectorAll('main *')].map(e => [parseFloat(getComputedStyle(e).fontSize), e.matches('.first dd, .first dd *')])"
+        )
+        largest = max(size for size, is_first in sizes if is_first)
+        self.assertGreater(largest, max(size for size, is_first in sizes if not is_first))
+
+    def test_nothing_of_gnuplot_under_the_mouse(self):
+        self.report(*TABLE1, *TREND)
+        self.open()
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('svg title, svg desc').length"), 0)
+        self.assertNotIn("skip 1 using", self.content("report.html"))
 
     def test_lines_of_the_title(self):
         self.report(*MODEL, *QUICK)
@@ -706,6 +749,26 @@ class Page(PageTest, ProgramTest):
         self.assertGreater(len(pages), 3)
         for page in pages:
             self.assertEqual(page.count("SIMULATION: no real sensor was measured."), 1)
+        # And across it in large letters, a tenth of black: 229.5 of 255.
+        marked = self.pixels_of_the_mark()
+        self.assertEqual(len(marked), len(pages))
+        self.assertGreater(min(marked), 500)
+        self.report(*MODEL, *QUICK)
+        self.open()
+        self.assertLess(max(self.pixels_of_the_mark()), 200)
+
+    def pixels_of_the_mark(self) -> list[int]:
+        """How many pixels of each page are as grey as the word across a simulation."""
+        path = self.directory / "page.pdf"
+        path.write_bytes(self.browser.pdf())
+        drawn = subprocess.run(["pdftoppm", "-gray", "-r", "30", path], capture_output=True, check=True).stdout
+        counts = []
+        while drawn:
+            size = re.match(rb"P5\n(\d+) (\d+)\n255\n", drawn)
+            end = size.end() + int(size[1]) * int(size[2])
+            counts.append(sum(drawn[size.end() : end].count(bytes([grey])) for grey in [229, 230]))
+            drawn = drawn[end:]
+        return counts
 
     def test_measurement_that_failed(self):
         result = self.run_program("report", "--bench-fault", "unplugged-device@4", "--out", "out")
@@ -735,13 +798,18 @@ class Page(PageTest, ProgramTest):
                 c => c.match(/\\d+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0)))""")
         for text, paper in colours[:2]:
             self.assertGreater(text - paper, 255)  # Light on dark, by a third of the range.
-        self.assertEqual(colours[2], [0, 3 * 255])  # The pictures stay black on white.
+        # The pictures are black on white, and turned over as a whole: white paper becomes 8 % of white.
+        self.assertEqual(colours[2], [0, 3 * 255])
+        self.assertIn("invert(0.92)", self.browser.evaluate("getComputedStyle(document.querySelector('figure svg')).filter"))
+        self.browser.call("Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('figure svg')).filter"), "none")
 
     def test_print_on_a4(self):
         self.report("--trials", "1000")
         self.open()
         pdf = self.browser.pdf()
-        self.assertIn(len(re.findall(rb"/Type\s*/Page\b", pdf)), range(4, 9))
+        # Sections that stay with their pictures leave white behind: one page more than without.
+        self.assertIn(len(re.findall(rb"/Type\s*/Page\b", pdf)), range(4, 10))
         boxes = {tuple(map(float, box.split())) for box in re.findall(rb"/MediaBox\s*\[([^]]*)\]", pdf)}
         for _, _, width, height in boxes:
             # A4 in points of 1/72 inch; Chromium rounds to pixels of 1/96 inch.
@@ -758,6 +826,99 @@ class Page(PageTest, ProgramTest):
         self.assertEqual(len(sizes), 5)
         for size in sizes:
             self.assertGreater(size, 8)  # In pixels of 1/96 inch.
+
+
+class Certificate(PageTest, ProgramTest):
+    """What ISO/IEC 17025 asks a certificate to name, in the page."""
+
+    LABELS = {
+        "device": "DJB A/1800/V", "serial": "4711", "operator": "J. Doe", "date": "2024-05-01",
+        "certificate-number": "K-17", "laboratory": "Lab & Co, Town", "country": "DE", "customer": "Somebody, Elsewhere",
+        "maker": "DJB", "model-name": "A/1800/V", "reference-id": "no. 7, certificate R-1", "conditions": "23 \u00b0C, 45 %",
+        "procedure": "P-4", "label": "bench=B1",
+    }
+
+    def pages(self) -> list[str]:
+        self.open()
+        text = subprocess.run(["pdftotext", "-layout", "-", "-"], input=self.browser.pdf(), capture_output=True, check=True).stdout
+        return text.decode().split("\f")[:-1]
+
+    def section(self) -> str:
+        return self.browser.evaluate("document.querySelector('#certificate').innerText")
+
+    def test_labels(self):
+        output = self.report(*TABLE1, *QUICK, *options_of(self.LABELS)).stdout.decode()
+        block = output.split("LABELS (as given)\n")[1].split("\n\n")[0]
+        names = ["Device", "Serial number", "Operator", "Date", "Certificate number", "Laboratory", "Country", "Customer",
+                 "Manufacturer", "Model", "Reference sensor", "Conditions", "Procedure", "bench"]
+        given = [*list(self.LABELS.values())[:-1], "B1"]
+        self.assertEqual([(line[:28].strip(), line[28:]) for line in block.splitlines()], list(zip(names, given)))
+        labels = json.loads(self.content("results.json"))["labels"]
+        self.assertEqual(labels["certificate_number"], "K-17")
+        self.assertEqual((labels["model_name"], labels["bench"], labels["note"]), ("A/1800/V", "B1", None))
+
+    def test_what_it_says(self):
+        self.report(*TABLE1, *QUICK, *options_of(self.LABELS))
+        self.open()
+        self.assertIn("Calibration certificate K-17", self.browser.evaluate("document.querySelector('header').innerText"))
+        words = self.section()
+        for part in ["no. 7, certificate R-1", "23 °C, 45 %", "Procedure: P-4", "coverage factor k = 2", "the item tested only", "J. Doe"]:
+            self.assertIn(part, words)
+        self.assertIn("Lab & Co, Town", self.browser.evaluate("document.body.innerText"))
+        # Not the paper's unit, and one way to write powers.
+        for text in ["mV", "e-0", "e+0"]:
+            self.assertNotIn(text, self.browser.evaluate("document.body.innerText"))
+
+    def test_every_page_names_the_item_and_its_number(self):
+        self.report(*TABLE1, *QUICK, *options_of(self.LABELS))
+        pages = self.pages()
+        self.assertGreater(len(pages), 3)
+        for number, page in enumerate(pages, 1):
+            self.assertIn("Certificate K-17, DJB A/1800/V, serial number 4711", page)
+            self.assertIn(f"page {number} of {len(pages)}", page)
+        self.assertIn("End of the certificate", pages[-1])
+        self.assertIn("signature", "".join(pages))
+
+    def test_a_report_is_no_certificate(self):
+        self.report(*MODEL, *QUICK)
+        pages = self.pages()
+        self.assertIn("End of the report", pages[-1])
+        for page in pages:
+            self.assertIn("Report, accelerometer, serial number not given", page)
+        self.assertNotIn("signature", self.section())
+        self.assertIn("no item was tested", self.section())
+        self.assertIn("Not stated", self.section())
+
+    def test_nasty_labels_below_the_pages(self):
+        self.report(*MODEL, *QUICK, "--serial", "\"; } body { display: none } /* \\", "--certificate-number", "</style><script>x()</script>")
+        self.assertIn("serial number \"; } body { display: none } /* \\", self.pages()[0])
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('script').length"), 0)
+
+    def test_no_row_is_split(self):
+        self.report("--trials", "1000")
+        self.open()
+        self.browser.call("Emulation.setEmulatedMedia", media="print")
+        self.addCleanup(self.browser.call, "Emulation.setEmulatedMedia", media="")
+        rows = self.browser.evaluate("[...document.querySelectorAll('tr')].filter(r => getComputedStyle(r).breakInside !== 'avoid').length")
+        self.assertEqual(rows, 0)
+        self.browser.call("Emulation.setEmulatedMedia", media="")
+        # And no section is parted from its picture: its heading is on the page of the picture's caption.
+        pages = self.pages()
+        for heading, caption in [("Error system", "the error system k is"), ("Maximum energy", "above: the signal within"),
+                                 ("Trend", "the largest energy for signals")]:
+            found = [page for page in pages if re.search(rf"^ *{heading}$", page, re.MULTILINE)]
+            self.assertEqual(len(found), 1, heading)
+            self.assertIn(caption, " ".join(found[0].lower().split()))
+        # Folded on the screen, but on paper to its last row.
+        self.assertRegex(self.pages()[-1], r"(?m)^ *6000 ")
+
+    def test_refused(self):
+        for option in ["--customer", "--certificate-number", "--label"]:
+            self.refuse_option(option, None, "no value", "expected")
+        for value in ["x", "x=", "=x", "Serial=1", "serial=1", "maker=1", "a b=1"]:
+            self.refuse_option("--label", value, "expected KEY=VALUE")
+        self.refuse(["report", *MODEL, "--label", "a=1", "--label", "a=2"], "--label: ", "each KEY once")
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import pathlib
 import pty
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -879,8 +880,18 @@ class Endings(ProgramTest):
         os.close(writer)
 
     def test_help_and_version(self):
-        self.assertEqual(self.succeed("--version"), "emax 0.1.0\n")
-        self.assertEqual(self.succeed("report", "--version"), "emax 0.1.0\n")
+        version = self.succeed("--version")
+        self.assertEqual(self.succeed("report", "--version"), version)
+        found = re.fullmatch(r"emax 0\.1\.0(?: \(commit ([0-9a-f]{10})(?: and changes)?\))?\n", version)
+        self.assertIsNotNone(found, version)
+        # Where the sources are a repository, it is one of its commits.
+        source = DATA.parent.parent
+        is_repository = shutil.which("git") is not None and (source / ".git").exists() and subprocess.run(
+            ["git", "-C", source, "rev-parse", "HEAD"], capture_output=True, check=False).returncode == 0
+        if is_repository:
+            self.assertIsNotNone(found[1], version)
+            known = subprocess.run(["git", "-C", source, "cat-file", "-t", found[1]], capture_output=True, text=True, check=True)
+            self.assertEqual(known.stdout, "commit\n")
         short, long = self.succeed("--help"), self.succeed("report", "--help")
         self.assertEqual(self.succeed("report", "--model", "--help"), long)
         for text in [short, long]:

@@ -6,6 +6,7 @@
 
 #include "emax/app/base/version.hpp"
 
+#include "desk/cli/commit.hpp"
 #include "desk/cli/console.hpp"
 #include "desk/cli/nearest.hpp"
 
@@ -88,7 +89,9 @@ Problem run_program(Span<const Command> commands, const char* about, Arguments a
     return print(command != nullptr ? help_on(*command) : help_on(commands, about));
   }
   if (contains(arguments, "--version")) {
-    return print(std::string("emax ") + app::kVersion + "\n");
+    const std::string source = commit();
+    return print(std::string("emax ") + app::kVersion +
+                 (source.empty() ? "" : " (commit " + source + ")") + "\n");
   }
   return command != nullptr ? command->run(arguments.from(1))
                             : unknown_command(commands, arguments[0]);

@@ -19,6 +19,7 @@ struct Option {
   /// Takes the value over, or returns false. A switch has no value.
   std::function<bool(std::string_view value)> take;
   bool is_for_bench = false;  ///< Describes the simulated bench or its sweep.
+  bool may_repeat = false;    ///< May be given more than once.
 };
 
 /// An option with the value that it was given; refers to the options and the arguments.

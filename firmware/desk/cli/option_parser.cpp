@@ -63,7 +63,7 @@ Problem take_value(Span<const std::string_view> arguments, std::size_t& index, G
 }
 
 Problem add(const Given& given, std::vector<Given>& all) {
-  if (is_given(all, given.option->name)) {
+  if (!given.option->may_repeat && is_given(all, given.option->name)) {
     return bad_input(dashed(given.option->name) + ": given twice; expected once");
   }
   all.push_back(given);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -390,8 +391,49 @@ std::vector<Option> evaluation_options(ReportOptions& options) {
   return all;
 }
 
+constexpr const char* kLabelHeading = "Labels, in UTF-8; no result depends on them";
+
+bool is_label_name(std::string_view name) noexcept {
+  constexpr std::size_t kLongest = 24;
+  constexpr std::string_view kPermitted = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  constexpr std::string_view kTaken[] = {"device", "serial", "operator", "date", "note"};
+  const bool is_key = std::any_of(std::begin(kLabelRows), std::end(kLabelRows),
+                                  [name](const LabelRow& row) { return name == row.key; });
+  const bool is_taken =
+      is_key || std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
+  return !name.empty() && name.size() <= kLongest && !is_taken &&
+         name.find_first_not_of(kPermitted) == std::string_view::npos;
+}
+
+bool take_own_label(std::string_view text, ReportOptions& options) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::string_view name = text.substr(0, equals);
+  const bool is_known = std::any_of(options.own_labels.begin(), options.own_labels.end(),
+                                    [name](const OwnLabel& own) { return own.name == name; });
+  if (equals + 1 >= text.size() || is_known || !is_label_name(name)) {
+    return false;
+  }
+  options.own_labels.push_back({std::string(name), std::string(text.substr(equals + 1))});
+  return true;
+}
+
+std::vector<Option> certificate_options(ReportOptions& options) {
+  Builder builder(options, kLabelHeading);
+  for (std::size_t i = 0; i < kLabelRowCount; ++i) {
+    const LabelRow& row = kLabelRows[i];
+    builder.add_text(row.option, "TEXT", row.expectation, row.help, options.certificate[i]);
+  }
+  builder.add("label", "KEY=VALUE", "",
+              "KEY=VALUE, each KEY once, in small letters, digits and _, and not the name of "
+              "another label",
+              "another label; may be given more than once", take_own_label);
+  std::vector<Option> all = builder.options();
+  all.back().may_repeat = true;
+  return all;
+}
+
 std::vector<Option> label_options(ReportOptions& options) {
-  Builder builder(options, "Labels, in UTF-8; no result depends on them");
+  Builder builder(options, kLabelHeading);
   builder
       .add_text("device", "TEXT", "the name of the device", "name of the device, for titles too",
                 options.device_name)
@@ -429,7 +471,14 @@ std::vector<Option> output_options(ReportOptions& options) {
                 "of each by gnuplot and its script, pictures.gp; DIR\n"
                 "is made if missing, and files of an earlier run are\n"
                 "replaced",
-                options.out_directory);
+                options.out_directory)
+      .add_text("dcc", "FILE", "the name of a file",
+                "also a Digital Calibration Certificate, XML by PTB's\n"
+                "schema 3.2.1, not signed; takes the labels --device,\n"
+                "--serial, --operator, --date (YYYY-MM-DD),\n"
+                "--certificate-number, --laboratory, --country and\n"
+                "--customer",
+                options.dcc_path);
   return builder.options();
 }
 
@@ -446,6 +495,7 @@ std::vector<Option> report_options(ReportOptions& options) {
   append(all, bench_setting_options(options));
   append(all, evaluation_options(options));
   append(all, label_options(options));
+  append(all, certificate_options(options));
   append(all, output_options(options));
   return all;
 }

@@ -117,9 +117,22 @@ const char* or_null(const std::string& text) noexcept {
 
 }  // namespace
 
-app::Labels ReportOptions::labels() const noexcept {
-  return {or_null(device_name), or_null(serial), or_null(operated_by), or_null(date),
-          or_null(note)};
+std::vector<app::NamedLabel> ReportOptions::more_labels() const {
+  std::vector<app::NamedLabel> more;
+  for (std::size_t i = 0; i < kLabelRowCount; ++i) {
+    if (!certificate[i].empty()) {
+      more.push_back({kLabelRows[i].key, kLabelRows[i].name, certificate[i].c_str()});
+    }
+  }
+  for (const OwnLabel& own : own_labels) {
+    more.push_back({own.name.c_str(), own.name.c_str(), own.words.c_str()});
+  }
+  return more;
+}
+
+app::Labels ReportOptions::labels(const std::vector<app::NamedLabel>& more) const noexcept {
+  return {or_null(device_name), or_null(serial), or_null(operated_by),
+          or_null(date),        or_null(note),   {more.data(), more.size()}};
 }
 
 Problem parse_report_options(Span<const std::string_view> arguments, ReportOptions& options) {

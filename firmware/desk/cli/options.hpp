@@ -1,6 +1,7 @@
 // The command line of `emax report`: its options, their help and their errors.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,12 +15,19 @@
 #include "emax/base/span.hpp"
 #include "emax/sim/sim_bench.hpp"
 
+#include "desk/cli/label_rows.hpp"
 #include "desk/cli/option.hpp"
 #include "desk/cli/problem.hpp"
 #include "desk/import/import_points.hpp"
 #include "desk/trials/thread_helper.hpp"
 
 namespace emax::desk {
+
+/// A label of the user's own.
+struct OwnLabel {
+  std::string name;  ///< Its key in results.json, too.
+  std::string words;
+};
 
 /// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
 /// neither, from a measurement: of the instrument at a port, or on the simulated bench.
@@ -42,13 +50,21 @@ struct ReportOptions {
   std::string operated_by;
   std::string date;
   std::string note;
+  std::array<std::string, kLabelRowCount> certificate;  ///< By `kLabelRows`; empty if not given.
+  std::vector<OwnLabel> own_labels;
   bool in_g = false;
   bool json = false;
   std::string out_directory;  ///< Empty for no files.
+  std::string dcc_path;       ///< Of the digital certificate; empty for none.
 
   bool measures() const noexcept { return points_path.empty() && model_text.empty(); }
-  /// Refers to this object.
-  app::Labels labels() const noexcept;
+  const std::string& label(CertificateLabel label) const noexcept {
+    return certificate[static_cast<std::size_t>(label)];
+  }
+  /// Those of a certificate that are given, and the user's own. Refers to this object.
+  std::vector<app::NamedLabel> more_labels() const;
+  /// Refers to this object and to `more`.
+  app::Labels labels(const std::vector<app::NamedLabel>& more) const noexcept;
 };
 
 /// Reads the arguments behind `emax report` and checks all that can be checked without a file.

@@ -1,6 +1,8 @@
 // Parts of a report as HTML.
 #include "desk/page/html_markup.hpp"
 
+#include <algorithm>
+
 #include "emax/app/base/utf8.hpp"
 
 namespace emax::desk {
@@ -60,6 +62,21 @@ void append_escaped(std::string& html, char c) {
   }
 }
 
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+// Of the "e-03" behind a number's digits; 0 if there is none.
+std::size_t length_of_power(std::string_view words) noexcept {
+  constexpr std::size_t kSign = 2;
+  if (words.size() <= kSign || words[0] != 'e' || (words[1] != '-' && words[1] != '+')) {
+    return 0;
+  }
+  std::size_t end = kSign;
+  while (end < words.size() && is_digit(words[end])) {
+    ++end;
+  }
+  return end > kSign ? end : 0;
+}
+
 constexpr const char* kUnknownCharacter = "\xEF\xBF\xBD";  // U+FFFD.
 
 }  // namespace
@@ -89,7 +106,19 @@ std::string quoted(const char* text) {
 }
 
 void append_words(std::string& html, std::string_view words) {
+  char before = ' ';
   for (; !words.empty(); words.remove_prefix(1)) {
+    const std::size_t power = is_digit(before) ? length_of_power(words) : 0;
+    if (power > 0) {
+      html += words[1] == '-' ? " × 10<sup>−" : " × 10<sup>";
+      std::string_view digits = words.substr(2, power - 2);
+      digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+      html.append(digits).append("</sup>");
+      words.remove_prefix(power - 1);
+      before = '0';
+      continue;
+    }
+    before = words.front();
     const std::string_view two = words.substr(0, 2);
     if (two == "^2") {
       html += "²";
@@ -148,6 +177,7 @@ void HtmlMarkup::begin(ReportPart part, const char* name) noexcept {
       break;
     case ReportPart::kTable:
       end_block();
+      is_budget_ = section_ == ReportSection::kMeasurement;
       break;
     case ReportPart::kHead:
     case ReportPart::kLine:
@@ -186,10 +216,21 @@ void HtmlMarkup::end_block() {
       break;
     case Block::kBody:
       html_ += "</td></tr>\n</tbody></table></div>\n";
+      move_budget();
       break;
   }
   block_ = Block::kNone;
   has_cell_ = false;
+}
+
+void HtmlMarkup::move_budget() {
+  if (!is_budget_) {
+    return;
+  }
+  budget_ = html_.substr(paragraph_at_);
+  html_.erase(paragraph_at_);
+  html_ += "<p><a href=\"#budget\">Uncertainty budget of each point</a>, at the end.</p>\n";
+  is_budget_ = false;
 }
 
 void HtmlMarkup::begin_row(const char* name) {
@@ -207,6 +248,7 @@ void HtmlMarkup::begin_row(const char* name) {
 
 void HtmlMarkup::begin_paragraph(const char* kind) {
   end_block();
+  paragraph_at_ = html_.size();
   html_ += "<p class=\"" + std::string(kind) + "\">";
   block_ = Block::kParagraph;
 }

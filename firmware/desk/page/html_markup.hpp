@@ -17,7 +17,8 @@ void append_quoted(std::string& html, const char* text);
 /// @returns The same as HTML of its own.
 std::string quoted(const char* text);
 
-/// Adds words of ours: "m/s^2" with a raised 2, "+-" as one sign.
+/// Adds words of ours: "m/s^2" with a raised 2, "+-" as one sign, 5.1e-03 as 5.1 × 10 with a raised
+/// exponent.
 void append_words(std::string& html, std::string_view words);
 
 /// The words and numbers of a report, between the marks that `HtmlMarkup` sets.
@@ -69,6 +70,10 @@ class HtmlMarkup final : public app::ReportMarkup {
   /// Ends the last section.
   void finish();
 
+  /// @returns The budget of a measurement, which is long and stands at the end of a page; empty if
+  /// there is none.
+  const std::string& budget() const noexcept { return budget_; }
+
  private:
   // What is open: nothing, a table of rows, a paragraph, a table of lines.
   enum class Block { kNone, kRows, kParagraph, kHead, kBody };
@@ -77,6 +82,7 @@ class HtmlMarkup final : public app::ReportMarkup {
   void begin_row(const char* name);
   void begin_paragraph(const char* kind);
   void begin_line(bool is_head);
+  void move_budget();
 
   std::string& html_;
   SectionEnd& section_end_;
@@ -84,6 +90,9 @@ class HtmlMarkup final : public app::ReportMarkup {
   Block block_ = Block::kNone;
   bool has_cell_ = false;
   bool has_section_ = false;
+  std::string budget_;
+  bool is_budget_ = false;        // The table that is open.
+  std::size_t paragraph_at_ = 0;  // Where the last paragraph begins.
 };
 
 }  // namespace emax::desk

@@ -11,6 +11,7 @@
 #include "desk/cli/console.hpp"
 #include "desk/compare/figure_text.hpp"
 #include "desk/files/rounding.hpp"
+#include "desk/page/certificate_part.hpp"
 #include "desk/page/html_markup.hpp"
 #include "desk/page/page_frame.hpp"
 #include "desk/page/page_picture.hpp"
@@ -79,11 +80,12 @@ class EnergyFormat {
  public:
   static constexpr int kDecimalsAlone = 4;
 
-  EnergyFormat(double energy, double u)
+  /// @param[in] expanded The expanded uncertainty, which gets two digits; 0 for none.
+  EnergyFormat(double energy, double expanded)
       : exponent_(energy != 0.0 ? exponent_of(energy) : 0), decimals_(kDecimalsAlone) {
     constexpr int kMostDecimals = 12;
-    if (u > 0.0) {
-      decimals_ = std::clamp(exponent_ - exponent_of(u) + 2, 3, kMostDecimals);
+    if (expanded > 0.0) {
+      decimals_ = std::clamp(exponent_ - exponent_of(expanded) + 1, 1, kMostDecimals);
     }
   }
 
@@ -94,7 +96,7 @@ class EnergyFormat {
 
   std::string unit() const {
     const std::string power = (exponent_ < 0 ? "−" : "") + std::to_string(std::abs(exponent_));
-    return (exponent_ == 0 ? "" : " × 10<sup>" + power + "</sup>") + " V²&nbsp;s";
+    return (exponent_ == 0 ? "" : "&nbsp;×&nbsp;10<sup>" + power + "</sup>") + " V²&nbsp;s";
   }
 
  private:
@@ -198,40 +200,54 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
   if (energy < 0.0 || results.settings.criterion == Criterion::kInBandError) {
     return;
   }
-  std::string value =
+  const std::string value =
       percentage(results.percent_of(energy), expanded(results.uncertainty)) + " of S&nbsp;a";
-  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
-    value += "; an ideal sensor: " + percentage(results.percent_of(results.ideal.energy_v2s), 0.0);
-  }
   const bool is_error = results.settings.criterion == Criterion::kIntegralSquareError;
   append_figure(html, "",
                 is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",
                 value);
+  if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
+    append_figure(html, "", "The same of an ideal sensor, K = S",
+                  percentage(results.percent_of(results.ideal.energy_v2s), 0.0) + " of S&nbsp;a");
+  }
 }
+
+// E with its U, where there is one.
+void append_energy(std::string& html, const EvaluationResults& results) {
+  const app::EnergyUncertainty& known = results.uncertainty;
+  const double energy = results.energy_v2s();
+  const std::string name =
+      std::string(name_of(results.settings.criterion)) + " at the estimates, E";
+  const double u = known.exists() && !results.is_damping_open() ? known.u_v2s : 0.0;
+  const EnergyFormat format(energy, kCoverageFactor * u);
+  if (!(u > 0.0)) {
+    append_figure(html, "", name, format.number(energy) + format.unit());
+    return;
+  }
+  append_figure(html, "", name + ", with U (k = 2)",
+                "(" + format.number(energy) + " ± " + format.number(kCoverageFactor * u) + ")" +
+                    format.unit());
+}
+
+constexpr const char* kMore = " class=\"more\"";
 
 void append_uncertainty(std::string& html, const EvaluationResults& results) {
   const app::EnergyUncertainty& known = results.uncertainty;
-  const double energy = results.energy_v2s();
-  const char* const name = name_of(results.settings.criterion);
-  const EnergyFormat format(energy, known.exists() ? known.u_v2s : 0.0);
-  append_figure(html, "", std::string(name) + " at the estimates, E",
-                format.number(energy) + format.unit());
   if (results.is_damping_open()) {
-    append_figure(html, "", "Range of E, as the points leave the damping open", range_of(results));
+    append_figure(html, kMore, "Range of E, as the points leave the damping open",
+                  range_of(results));
     return;
   }
   if (!known.exists()) {
-    append_figure(html, "", "Standard uncertainty u(E)",
+    append_figure(html, kMore, "Standard uncertainty u(E)",
                   results.has_uncertainty() ? "none: the draws are no devices"
                                             : "none: all uncertainties are zero");
     return;
   }
-  append_figure(html, "", "Standard uncertainty u(E)", format.number(known.u_v2s) + format.unit());
-  append_figure(html, "", "Expanded uncertainty U(E), k = 2",
-                format.number(kCoverageFactor * known.u_v2s) + format.unit());
+  const EnergyFormat format(results.energy_v2s(), kCoverageFactor * known.u_v2s);
   const std::string percent =
       words_of([&](TextWriter& out) { out.general(kPercent * results.settings.probability, 6); });
-  append_figure(html, "", percent + " % coverage interval of E",
+  append_figure(html, kMore, percent + " % coverage interval of E",
                 format.number(known.symmetric.low) + " to " + format.number(known.symmetric.high) +
                     format.unit());
 }
@@ -241,9 +257,9 @@ void append_papers_maximum(std::string& html, const EvaluationResults& results) 
     return;
   }
   const MonteCarloResult& result = results.trials.result;
-  const EnergyFormat format(result.maximum, result.u);
+  const EnergyFormat format(result.maximum, kCoverageFactor * result.u);
   const bool is_paper = results.settings.criterion == Criterion::kIntegralSquareError;
-  append_figure(html, "",
+  append_figure(html, kMore,
                 is_paper ? "The paper's E<sub>max</sub>, largest of its Monte Carlo trials"
                          : "E<sub>max</sub>, largest of the Monte Carlo trials",
                 format.number(result.maximum) + format.unit());
@@ -253,7 +269,7 @@ void append_bound(std::string& html, const EvaluationResults& results) {
   if (results.has_bound) {
     const EnergyFormat format(results.bound_v2s, 0.0);
     append_figure(
-        html, "", "Proven at the estimates: no signal has more than",
+        html, kMore, "Proven at the estimates: no signal has more than",
         format.number(rounded_up(results.bound_v2s, EnergyFormat::kDecimalsAlone)) + format.unit());
   }
 }
@@ -322,6 +338,7 @@ void append_headline(std::string& html, const EvaluationResults& results,
   append_warnings(html, results, warnings);
   append_second_figure(html, results);
   append_papers_figure(html, results);
+  append_energy(html, results);
   append_uncertainty(html, results);
   append_bound(html, results);
   append_papers_maximum(html, results);
@@ -339,10 +356,23 @@ std::string name_of(const app::Labels& labels) {
 
 std::string opening(const app::ReportContext& context) {
   const bool is_marked = is_simulated(context);
+  const char* const number = certificate_number(context.labels);
+  const std::string about =
+      number == nullptr
+          ? std::string("The largest error that this accelerometer can make")
+          : "Calibration certificate " + quoted(number) + ": the largest error that it can make";
   return page_opening(name_of(context.labels),
-                      is_marked ? " (simulation) - emax report" : " - emax report",
-                      "The largest error that this accelerometer can make",
-                      is_marked ? app::kSimulationBanner : "");
+                      is_marked ? " (simulation) - emax report" : " - emax report", about,
+                      is_marked ? app::kSimulationBanner : "", running_words(context));
+}
+
+void append_budget(std::string& html, const std::string& budget) {
+  if (!budget.empty()) {
+    html +=
+        "<section id=\"budget\">\n<h2>Uncertainty budget</h2>\n<details><summary>Each "
+        "point</summary>\n" +
+        budget + "</details>\n</section>\n";
+  }
 }
 
 std::string closing() {
@@ -370,6 +400,9 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
   if (warnings.empty()) {
     html += "<p class=\"note\">No warnings.</p>\n";
   }
+  body += certificate_of(context);
+  append_budget(body, markup.budget());
+  append_end(body, context);
   if (pictures.empty()) {
     html += std::string("<p class=\"note\">No pictures: gnuplot was missing when this page was ") +
             "made, or has failed. Running gnuplot " + kPictureScript +
@@ -388,6 +421,7 @@ void write_fault_page(const app::ReportContext& context, const EvaluationResults
   HtmlMarkup markup(html, section_end);
   write_measurement(context, refused, report, &markup);
   markup.finish();
+  append_budget(html, markup.budget());
   write_html(out, html + closing());
 }
 

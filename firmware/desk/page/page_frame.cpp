@@ -33,13 +33,20 @@ p { margin: .6rem 0; }
 sup { line-height: 0; }
 .about { color: var(--soft); }
 #title .about { white-space: pre-line; }
-.headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(14rem, 1fr)); gap: .8rem 1.5rem;
+.headline { display: grid; grid-template-columns: repeat(auto-fit, minmax(12rem, 1fr)); gap: .8rem 1.5rem;
   margin: 1rem 0; padding: 1rem; border: 2px solid var(--text); }
 .headline div { min-width: 0; }
 .headline dt { color: var(--soft); font-size: .9rem; }
 .headline dd { margin: 0; font-size: 1.1rem; }
 .headline .first { grid-column: 1 / -1; }
 .headline .first dd { font-size: 2rem; font-weight: bold; line-height: 1.2; }
+.headline .more dd { font-size: 1rem; }
+details { margin: .8rem 0; }
+summary { cursor: pointer; font-weight: bold; }
+.certificate p { max-width: 46rem; }
+.signature { margin: 3rem 0 0; padding-top: .3rem; border-top: 1px solid var(--text); max-width: 30rem; }
+.end { margin: 1.5rem 0; text-align: center; color: var(--soft); }
+.watermark { display: none; }
 .warning, .note { padding: .6rem .8rem; border-left: .4rem solid var(--line); background: var(--note-paper); }
 .warning { border-color: var(--warn); background: var(--warn-paper); color: var(--warn); font-weight: bold; }
 /* A number that a warning is about must not look like one to rely on. */
@@ -64,6 +71,10 @@ table { border-collapse: collapse; }
 .numbers thead tr:last-child th { border-bottom: 1px solid var(--text); }
 figure { margin: 1.2rem 0; }
 figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
+@media screen and (prefers-color-scheme: dark) {
+  /* White paper becomes dark, and hues stay what they are. */
+  figure svg { filter: invert(.92) hue-rotate(180deg); }
+}
 figcaption { margin-top: .4rem; color: var(--soft); font-size: .92rem; }
 a { color: inherit; }
 footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--line); color: var(--soft);
@@ -74,7 +85,7 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   figure { overflow-x: auto; }
   figure svg { min-width: 36rem; }
 }
-@page { size: A4; margin: 15mm; }
+@page { size: A4; margin: 15mm 15mm 18mm; }
 @media print {
   :root { --text: #000000; --soft: #404040; --line: #a0a0a0; --paper: #ffffff; --warn: #000000;
     --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
@@ -89,7 +100,15 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   #fit svg { max-height: 120mm; }
   #ranking svg { max-height: 230mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
-  figure, .wide, .numbers tr, .headline, .warning, .note { break-inside: avoid; }
+  figure, tr, li, .headline, .warning, .note, .sign { break-inside: avoid; }
+  summary { break-after: avoid; }
+  /* What is said of a picture stays with it. */
+  #error-system, #energy, #trend { break-inside: avoid; }
+  /* What is folded on a screen is printed all the same. */
+  details::details-content { content-visibility: visible; block-size: auto; }
+  summary { list-style: none; }
+  .watermark { display: block; position: fixed; top: 42%; left: 0; right: 0; text-align: center; font-size: 64pt; white-space: nowrap;
+    font-weight: bold; transform: rotate(-35deg); color: #000000; opacity: .1; }
   .warning { border: 1.5pt solid #000000; }
   .wide { overflow: visible; }
   .numbers { font-size: 8pt; }
@@ -100,16 +119,47 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
 </head>
 )";
 
+// A string of CSS, in which no character has a meaning; what no line can hold is a blank.
+std::string css_string(const std::string& text) {
+  constexpr unsigned kFirstPlain = 0x20;
+  constexpr unsigned kLastPlain = 0x7F;
+  std::string css = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                           (c >= '0' && c <= '9') || c == ' ' || code > kLastPlain;
+    if (code < kFirstPlain || code == kLastPlain) {
+      css += ' ';
+    } else if (is_letter) {
+      css += c;
+    } else {
+      constexpr const char* kDigits = "0123456789abcdef";
+      css += {'\\', kDigits[code >> 4U], kDigits[code & 0xFU], ' '};
+    }
+  }
+  return css + "\"";
+}
+
+// What Chromium, Firefox and others print in the margin.
+std::string margins_of(const std::string& running) {
+  constexpr const char* kFont = "font: 8pt sans-serif; color: #404040;";
+  return std::string("<style>@page { @bottom-left { content: ") + css_string(running) + "; " +
+         kFont + " } @bottom-right { content: \"page \" counter(page) \" of \" counter(pages); " +
+         kFont + " } }</style>\n";
+}
+
 }  // namespace
 
 std::string page_opening(const std::string& title, const std::string& kind,
-                         const std::string& about, const std::string& banner) {
+                         const std::string& about, const std::string& banner,
+                         const std::string& running) {
   const std::string mark =
       banner.empty()
           ? "<body>\n"
-          : "<body class=\"marked\">\n<div class=\"banner\" role=\"note\">" + banner + "</div>\n";
-  return std::string(kHead) + "<title>" + title + kind + "</title>\n" + kStyle + mark +
-         "<main>\n<header>\n<h1>" + title + "</h1>\n<p class=\"about\">" + about +
+          : "<body class=\"marked\">\n<div class=\"banner\" role=\"note\">" + banner +
+                "</div>\n<div class=\"watermark\" aria-hidden=\"true\">SIMULATION</div>\n";
+  return std::string(kHead) + "<title>" + title + kind + "</title>\n" + margins_of(running) +
+         kStyle + mark + "<main>\n<header>\n<h1>" + title + "</h1>\n<p class=\"about\">" + about +
          "</p>\n</header>\n";
 }
 

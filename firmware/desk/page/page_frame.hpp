@@ -12,9 +12,12 @@ namespace emax::desk {
 /// @param[in] kind  What follows the heading in the title of the window: " - emax report".
 /// @param[in] about A sentence below the heading, as HTML.
 /// @param[in] banner What every reader of every printed page must see, as HTML; empty for nothing.
+///                   With one, SIMULATION stands across every printed page.
+/// @param[in] running What stands below every printed page, beside its number: text of others.
 /// @returns All up to and with the header of the page.
 std::string page_opening(const std::string& title, const std::string& kind,
-                         const std::string& about, const std::string& banner);
+                         const std::string& about, const std::string& banner,
+                         const std::string& running = "");
 
 /// @param[in] files What is in the files beside the page, as HTML.
 /// @returns The end of the page.

@@ -21,11 +21,14 @@ std::string with_own_names(const std::string& tag, const std::string& prefix) {
   return result;
 }
 
-// What is from `start` to `end` is left out, if it is there.
-void remove_part(std::string& text, const std::string& start, const std::string& end) {
-  const std::size_t first = text.find(start);
-  const std::size_t last = text.find(end, first);
-  if (first != std::string::npos && last != std::string::npos) {
+// What is from `start` to `end` is left out, wherever it is.
+void remove_parts(std::string& text, const std::string& start, const std::string& end) {
+  for (std::size_t first = text.find(start); first != std::string::npos;
+       first = text.find(start, first)) {
+    const std::size_t last = text.find(end, first);
+    if (last == std::string::npos) {
+      return;
+    }
     text.erase(first, last + end.size() - first);
   }
 }
@@ -33,8 +36,9 @@ void remove_part(std::string& text, const std::string& start, const std::string&
 void append_svg(std::string& html, const std::string& picture, const std::string& title,
                 std::size_t number) {
   std::string svg = picture.substr(std::min(picture.find("<svg"), picture.size()));
-  remove_part(svg, "<title>", "</title>");
-  remove_part(svg, "<desc>", "</desc>");
+  // A browser would show the titles, which are words of gnuplot's, wherever the mouse is.
+  remove_parts(svg, "<title>", "</title>");
+  remove_parts(svg, "<desc>", "</desc>");
   const std::string prefix = "p" + std::to_string(number) + "-";
   bool is_first = true;
   for (std::size_t at = 0; at < svg.size();) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 
 #include "emax/app/report/measurement.hpp"
@@ -29,6 +30,7 @@ constexpr double kLeastRowsPerPeriod = 20.0;
 // Fewer rows make a curve of corners.
 constexpr double kLeastRows = 400.0;
 constexpr double kPeriodsShown = 50.0;
+constexpr int kEnergyDigits = 4;
 
 // Words and numbers as a string.
 template <typename Write>
@@ -37,6 +39,23 @@ std::string words_of(const Write& write) {
   TextWriter out(sink);
   write(out);
   return sink.text();
+}
+
+// As it is printed in books: 5.115 × 10⁻³.
+std::string in_print(double value, int digits) {
+  constexpr const char* kRaised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::string plain = words_of([&](TextWriter& out) { out.scientific(value, digits - 1); });
+  const std::size_t e = plain.find('e');
+  const int exponent = e < plain.size() ? std::atoi(plain.c_str() + e + 1) : 0;
+  std::string text = plain.substr(0, e);
+  if (exponent == 0) {
+    return text;
+  }
+  text += exponent < 0 ? " × 10⁻" : " × 10";
+  for (const char digit : std::to_string(std::abs(exponent))) {
+    text += kRaised[digit - '0'];
+  }
+  return text;
 }
 
 // Titles
@@ -100,7 +119,7 @@ std::string fit_quality_of(const EvaluationResults& results) {
 std::string energy_of(const EvaluationResults& results) {
   const double energy = results.energy_v2s();
   return words_of([&](TextWriter& out) {
-    out.text("E = ").scientific(energy, 4).text(" V² s");
+    out.text("E = ").text(in_print(energy, kEnergyDigits).c_str()).text(" V² s");
     if (energy >= 0.0) {
       const double full = results.device.estimate.sensitivity * results.limit_mps2;
       const bool is_error = results.settings.criterion != Criterion::kEnergyDifference;
@@ -118,7 +137,7 @@ std::string trials_of(const EvaluationResults& results) {
   return words_of([&](TextWriter& out) {
     out.integer(result.trials).text(" trials, S, f0 and β ");
     out.text(is_box ? "uniform within ±u" : "jointly normal").text("; u(E) = ");
-    out.scientific(result.u, 2).text(" V² s");
+    out.text(in_print(result.u, 2).c_str()).text(" V² s");
   });
 }
 
@@ -126,7 +145,8 @@ std::string line_of(const EvaluationResults& results) {
   const Trend& trend = results.trend;
   return words_of([&](TextWriter& out) {
     out.text("line: E = ").general(trend.slope, 5).text(" V² · T ");
-    out.text(trend.intercept < 0.0 ? "− " : "+ ").general(std::abs(trend.intercept), 4);
+    out.text(trend.intercept < 0.0 ? "− " : "+ ");
+    out.text(in_print(std::abs(trend.intercept), 3).c_str());
     out.text(" V² s, correlation ").fixed(trend.correlation, 6);
   });
 }
@@ -195,7 +215,8 @@ void write_axis(TextWriter& out, const char* axis, const char* name, const std::
 struct ResponseRange {
   double least_amplitude = HUGE_VAL;
   double largest_amplitude = 0.0;
-  double amplitude_deviation = 0.0;  // From the fit, relative to it, with U (k = 2).
+  double amplitude_deviation = 0.0;  // From the fit, relative to it, with U of its own (k = 2).
+  double common = 0.0;               // Relative U of what all amplitudes have in common.
   double phase_deviation_rad = 0.0;
 };
 
@@ -209,12 +230,12 @@ ResponseRange range_of(const EvaluationResults& results) {
     const ResponsePoint& point = points[i];
     const double fitted = amplitude(device, point.frequency_hz);
     const double lag_rad = phase_rad(device, point.frequency_hz);
-    const double u = std::hypot(point.u_amplitude, common[i] * point.amplitude);
     range.least_amplitude = std::min({range.least_amplitude, point.amplitude, fitted});
     range.largest_amplitude = std::max({range.largest_amplitude, point.amplitude, fitted});
-    range.amplitude_deviation =
-        std::max(range.amplitude_deviation,
-                 (std::abs(point.amplitude - fitted) + kCoverageFactor * u) / fitted);
+    range.amplitude_deviation = std::max(
+        range.amplitude_deviation,
+        (std::abs(point.amplitude - fitted) + kCoverageFactor * point.u_amplitude) / fitted);
+    range.common = std::max(range.common, kCoverageFactor * common[i]);
     range.phase_deviation_rad =
         std::max(range.phase_deviation_rad,
                  std::abs(point.phase_rad - lag_rad) + kCoverageFactor * point.u_phase_rad);
@@ -250,6 +271,36 @@ void write_frequency_axis(const EvaluationResults& results, TextWriter& out) {
   }
 }
 
+// The key of all panels, and what the band of the amplitudes' deviations is.
+void write_response_key(double common, TextWriter& out) {
+  out.text("set key at screen ").text(common > 0.0 ? "0.26" : "0.5");
+  out.text(", screen 0.02 center bottom horizontal Left reverse\n");
+  if (common > 0.0) {
+    out.text("set label 1 'shaded: common to all amplitudes, U = ").general(kPercent * common, 2);
+    out.text(" %' at screen 0.98, screen 0.037 right\n");
+  }
+}
+
+// How far the amplitudes are from the fit, with the uncertainties of each point's own; what they
+// have in common moves all of them alike.
+void write_amplitude_deviation(const ResponseRange& range, const Scale& percent, TextWriter& out) {
+  constexpr double kMargin = 1.1;
+  const bool has_common = range.common > 0.0;
+  out.text("own(u, c) = u > c ? sqrt(u*u - c*c) : 0\n");
+  const double end = kMargin * kPercent * percent.factor * range.amplitude_deviation;
+  out.text("set yrange [").exact(-end).text(":").exact(end).text("]\nplot ");
+  if (has_common) {
+    out.text("'frequency_response.csv' skip 1 using 1:(-$10/$2*percent):($10/$2*percent) \\\n");
+    out.text("  with filledcurves fs solid noborder lc '#d8e4f0' title 'common part', \\\n  ");
+  }
+  const char* const own = has_common ? "own($4, $10)" : "$4";
+  out.text("'frequency_response.csv' skip 1 using 1:(deviation($1, $2 - ").text(own);
+  out.text(")):(0):\\\n  (2*").text(own).text("/amplitude($1)*percent) ");
+  out.text("with vectors as 1 title 'U of the point', \\\n");
+  out.text("  '' skip 1 using 1:(deviation($1, $2)) with points ls 4 title 'measured', \\\n");
+  out.text("  0 ls 2 title 'fit'\nset yrange [*:*]\n");
+}
+
 void write_frequency_response(const Picture& picture, const EvaluationResults& results,
                               TextWriter& out) {
   const Accelerometer& device = results.device.estimate;
@@ -280,29 +331,30 @@ void write_frequency_response(const Picture& picture, const EvaluationResults& r
   // Not by yerrorbars, which blank out what is around their points: short bars would be gone.
   out.text(
       "set style arrow 1 heads size screen 0.003,90 fixed lc '#000000' lw 1\nset samples 400\n");
-  out.text("set key at screen 0.5, screen 0.02 center bottom horizontal Left reverse\n");
+  write_response_key(range.common, out);
   out.text(is_logarithmic ? "set logscale y\nset format x ''\n" : "set format x ''\n");
   write_axis(out, "y", "amplitude", response.unit);
   out.text(
       "plot 'frequency_response.csv' skip 1 using 1:(($2 - $4)*As):(0):(2*$4*As) with vectors "
       "as 1 notitle, \\\n"
-      "  '' skip 1 using 1:($2*As) with points ls 4 title 'measured', \\\n"
+      "  '' skip 1 using 1:($2*As) with points ls 4 title 'measured', \\\n");
+  out.text(
       "  amplitude(x)*As ls 2 title 'fit'\n"
+      "unset label\n"
       "unset logscale y\nunset key\nset format x '%g'\nset xlabel 'frequency in Hz'\n"
       "set ylabel 'phase in °'\n"
-      "plot 'frequency_response.csv' skip 1 using 1:($3 - $5):(0):(2*$5) with vectors as 1, \\\n"
-      "  '' skip 1 using 1:3 with points ls 4, phase(x) ls 2\n"
+      "plot 'frequency_response.csv' skip 1 using 1:($3 - $5):(0):(2*$5) with vectors as 1 \\\n"
+      "  title 'U of the point', '' skip 1 using 1:3 with points ls 4 title 'measured', \\\n"
+      "  phase(x) ls 2 title 'fit'\n"
       "set format x ''\nset xlabel ''\nset samples 2\n");
   write_axis(out, "y", "measured − fit", percent.unit);
-  out.text(
-      "plot 'frequency_response.csv' skip 1 using 1:(deviation($1, $2 - $4)):(0):\\\n"
-      "  (2*$4/amplitude($1)*percent) with vectors as 1, \\\n"
-      "  '' skip 1 using 1:(deviation($1, $2)) with points ls 4, 0 ls 2\n"
-      "set format x '%g'\nset xlabel 'frequency in Hz'\n");
+  write_amplitude_deviation(range, percent, out);
+  out.text("set format x '%g'\nset xlabel 'frequency in Hz'\n");
   write_axis(out, "y", "measured − fit", degrees.unit);
   out.text(
       "plot 'frequency_response.csv' skip 1 using 1:(turn($1, $3 - $5)):(0):(2*$5*degrees) \\\n"
-      "  with vectors as 1, '' skip 1 using 1:(turn($1, $3)) with points ls 4, 0 ls 2\n"
+      "  with vectors as 1 title 'U of the point', \\\n"
+      "  '' skip 1 using 1:(turn($1, $3)) with points ls 4 title 'measured', 0 ls 2 title 'fit'\n"
       "unset multiplot\n");
 }
 
@@ -392,12 +444,12 @@ void write_signal(const Picture& picture, const EvaluationResults& results, Text
   out.text("]\nset ytics ('−").general(shown_limit, 4).text("' ").exact(-shown_limit);
   out.text(", '0' 0, '").general(shown_limit, 4).text("' ").exact(shown_limit).text(")\n");
   write_axis(out, "y", "x", acceleration.unit);
-  out.text("plot 'signal.csv' skip 1 using ($1*ts):($2*xs) with lines ls 1\n");
+  out.text("plot 'signal.csv' skip 1 using ($1*ts):($2*xs) with lines ls 1 title 'x'\n");
   out.text("set tmargin at screen 0.6\nset bmargin at screen 0.13\n");
   out.text("set format x '%g'\nset ytics autofreq\nset yrange [*:*]\n");
   write_axis(out, "x", "time", time.unit);
   write_axis(out, "y", "error y", error.unit);
-  out.text("plot 'signal.csv' skip 1 using ($1*ts):($3*ys) with lines ls 1\n");
+  out.text("plot 'signal.csv' skip 1 using ($1*ts):($3*ys) with lines ls 1 title 'y'\n");
   out.text("unset multiplot\n");
 }
 
@@ -529,8 +581,9 @@ bool has_trend(const EvaluationResults& results) { return !results.trend_points(
 constexpr Kind kKinds[] = {
     {kPictureFiles[0], app::ReportSection::kFit, "frequency response",
      "Left: the measured points and the fitted model. Right: how far the points are from the "
-     "model. With a good fit most bars cross the dashed line and what remains has no shape; a "
-     "bow, a step or a resonance there is what the model does not know of.",
+     "model, with the uncertainties of each point's own (k = 2); shaded, what all amplitudes have "
+     "in common, which moves them alike. With a good fit most bars cross the dashed line and what "
+     "remains has no shape; a bow, a step or a resonance there is what the model does not know of.",
      nullptr, has_points, write_frequency_response},
     {kPictureFiles[1], app::ReportSection::kErrorSystem, "impulse responses",
      "The error system k is the sensor's response less that of the reference filter. From where "

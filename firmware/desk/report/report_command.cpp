@@ -19,9 +19,11 @@
 #include "desk/cli/console.hpp"
 #include "desk/cli/console_progress.hpp"
 #include "desk/cli/options.hpp"
+#include "desk/dcc/certificate_xml.hpp"
 #include "desk/files/output_files.hpp"
 #include "desk/files/points_file.hpp"
 #include "desk/files/report_files.hpp"
+#include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
 #include "desk/report/failure_words.hpp"
@@ -245,11 +247,33 @@ Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) 
   return json ? print(object) : print(text);
 }
 
+// Before the long work: the labels of a digital certificate, and whether there is room for it.
+Problem open_digital(const ReportOptions& options, const std::vector<app::NamedLabel>& more,
+                     SingleFile& file) {
+  if (options.dcc_path.empty()) {
+    return {};
+  }
+  const Problem problem = check_certificate_labels(options.labels(more));
+  return problem ? problem : file.open();
+}
+
+Problem write_digital(const Results& results, SingleFile& file) {
+  return file.write([&results](app::TextWriter& out) {
+    const std::string xml = certificate_xml(results.evaluation, results.context);
+    out.text(Span<const char>(xml.data(), xml.size()));
+  });
+}
+
 }  // namespace
 
 Problem run_report(Span<const std::string_view> arguments) {
   ReportOptions options;
   if (Problem problem = parse_report_options(arguments, options)) {
+    return problem;
+  }
+  const std::vector<app::NamedLabel> more_labels = options.more_labels();
+  SingleFile digital(options.dcc_path);
+  if (Problem problem = open_digital(options, more_labels, digital)) {
     return problem;
   }
   OutputFiles out_files;
@@ -268,7 +292,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   const app::Measurement measurement = bench.measurement();
   app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                 options.measures() ? &measurement : nullptr,
-                                options.labels(),
+                                options.labels(more_labels),
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};
@@ -289,6 +313,9 @@ Problem run_report(Span<const std::string_view> arguments) {
   Problem remark;
   Problem unwritten =
       files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
+  if (!unwritten && !is_of_rest) {
+    unwritten = write_digital(results, digital);
+  }
   // A measurement that no file holds is at least printed.
   if (unwritten && !(unwritten.status == ExitStatus::kFault && options.measures())) {
     return unwritten;

@@ -83,12 +83,8 @@ TEST(Report, Table2) {
   EXPECT_TRUE(says(line_with(report, "Peak of k"), "17462.4 V/(m/s) at 51.40 us"));
   EXPECT_TRUE(says(line_with(report, "5 % settling"), "1.453582 ms"));
   double energy = 0.0;
-  double milli = 0.0;
-  ASSERT_EQ(
-      std::sscanf(line_with(report, "E  ").c_str(), "E %lf V^2 s = %lf mV^2 s", &energy, &milli),
-      2);
+  ASSERT_EQ(std::sscanf(line_with(report, "E  ").c_str(), "E %lf V^2 s", &energy), 1);
   EXPECT_NEAR(energy, emax::test::kBestEnergy2ms, 0.5e-11);
-  EXPECT_NEAR(milli, 1e3 * energy, 0.5e-4);
   EXPECT_TRUE(says(line_with(report, "Signal"), "1 switch, at (ms)"));
   // The relaxation's bound is 0.00586; the gap is that over 0.00511525.
   double bound = 0.0;

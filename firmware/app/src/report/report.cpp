@@ -430,10 +430,7 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   const double energy = results.energy_v2s();
   out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
   const Criterion criterion = results.settings.criterion;
-  out.label("E").scientific(energy, 8).text(" V^2 s = ").general(kMilli * energy, 5);
-  out.text(criterion == Criterion::kInBandError ? " mV^2 s"
-                                                : " mV^2 s (the paper prints \"mV m^2\")");
-  out.line();
+  out.label("E").scientific(energy, 8).text(" V^2 s").line();
   out.label("xi = E/(a^2 T)").general(results.xi(), 7).text(" (V/(m/s^2))^2");
   if (out.in_g()) {
     out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");

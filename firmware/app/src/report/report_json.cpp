@@ -541,6 +541,9 @@ void write_head(const Labels& labels, JsonWriter& json) noexcept {
   write_label("operator", labels.operated_by, json);
   write_label("date", labels.date, json);
   write_label("note", labels.note, json);
+  for (const NamedLabel& label : labels.more) {
+    json.words(label.key, label.words);
+  }
   json.close();
 }
 

@@ -87,6 +87,9 @@ void write_title(const ReportContext& context, ReportWriter& out) noexcept {
   write_label("Operator", labels.operated_by, out);
   write_label("Date", labels.date, out);
   write_label("Note", labels.note, out);
+  for (const NamedLabel& label : labels.more) {
+    write_label(label.name, label.words, out);
+  }
 }
 
 }  // namespace emax::app

@@ -34,8 +34,8 @@ void write_report(const EvaluationResults& results, const ReportContext& context
 /// With a measurement there is an object `bench`. Its `common`, `budget` and `truth` are relative
 /// standard uncertainties and the truth of a simulated bench; a row of `budget` is frequency,
 /// noise, quantisation, hum, distortion, phase (rad); percentages are expanded (k = 2). With a
-/// label there is an object `labels` of all five, null for those not given. Names and labels are
-/// read as UTF-8; U+FFFD stands for what is not valid.
+/// label there is an object `labels` of the five, null for those not given, and of `more`. Names
+/// and labels are read as UTF-8; U+FFFD stands for what is not valid.
 ///
 /// @param[in] results    With the stage kDone.
 /// @param[in] context    As for the report.

@@ -3,9 +3,18 @@
 
 #include <cstdint>
 
+#include "emax/base/span.hpp"
+
 namespace emax::app {
 
 struct Measurement;
+
+/// A label beyond those that every instrument takes, such as what a certificate names.
+struct NamedLabel {
+  const char* key;    ///< In results.json.
+  const char* name;   ///< In text and page.
+  const char* words;  ///< As given.
+};
 
 /// What a laboratory calls its device and its work; null for what was not given. UTF-8 of any
 /// length: the text of a report shows the first kLabelShown characters in one line, with what is
@@ -16,10 +25,11 @@ struct Labels {
   const char* operated_by = nullptr;
   const char* date = nullptr;
   const char* note = nullptr;
+  Span<const NamedLabel> more = {};
 
   constexpr bool any() const noexcept {
     return device != nullptr || serial != nullptr || operated_by != nullptr || date != nullptr ||
-           note != nullptr;
+           note != nullptr || !more.empty();
   }
 };
 

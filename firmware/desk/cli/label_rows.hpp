@@ -1,0 +1,54 @@
+// What a certificate names beyond the labels of every instrument: a row each.
+#pragma once
+
+#include <cstddef>
+
+#include "emax/app/report/report_context.hpp"
+
+namespace emax::desk {
+
+/// A label as option, in results.json and in what is to be read.
+struct LabelRow {
+  const char* option;
+  const char* key;
+  const char* name;
+  const char* expectation;
+  const char* help;  ///< Lines of at most 55 characters.
+};
+
+enum class CertificateLabel : std::size_t {
+  kNumber,
+  kLaboratory,
+  kCountry,
+  kCustomer,
+  kMaker,
+  kModel,
+  kReference,
+  kConditions,
+  kProcedure,
+};
+
+/// In the order of `CertificateLabel`.
+inline constexpr LabelRow kLabelRows[] = {
+    {"certificate-number", "certificate_number", "Certificate number", "a number or a name",
+     "makes the page a certificate of this number"},
+    {"laboratory", "laboratory", "Laboratory", "a name and an address",
+     "name and address of who calibrates"},
+    {"country", "country", "Country", "two capital letters",
+     "of the laboratory, two letters of ISO 3166, as DE"},
+    {"customer", "customer", "Customer", "a name and an address", "for whom, name and address"},
+    {"maker", "maker", "Manufacturer", "a name", "who has made the device"},
+    {"model-name", "model_name", "Model", "a name", "the maker's name of its type"},
+    {"reference-id", "reference_id", "Reference sensor", "a name",
+     "the reference sensor and its certificate, to which\n"
+     "the results are traceable"},
+    {"conditions", "conditions", "Conditions", "a text",
+     "temperature, humidity, mounting and torque"},
+    {"procedure", "procedure", "Procedure", "a text", "of the laboratory, such as its number"},
+};
+inline constexpr std::size_t kLabelRowCount = sizeof kLabelRows / sizeof kLabelRows[0];
+
+/// @returns What is given for a row; null if nothing is.
+const char* label_of(const app::Labels& labels, CertificateLabel label) noexcept;
+
+}  // namespace emax::desk

@@ -1,0 +1,382 @@
+// The results as a Digital Calibration Certificate.
+#include "desk/dcc/certificate_xml.hpp"
+
+#include <cmath>
+#include <string_view>
+
+#include "emax/app/base/version.hpp"
+#include "emax/app/report/measurement.hpp"
+#include "emax/base/units.hpp"
+
+#include "desk/cli/console.hpp"
+#include "desk/cli/label_rows.hpp"
+#include "desk/dcc/xml_writer.hpp"
+
+namespace emax::desk {
+
+namespace {
+
+using app::EvaluationResults;
+
+constexpr double kCoverageFactor = 2.0;
+constexpr double kPercent = 100.0;
+
+// Units as D-SI writes them.
+constexpr const char* kSensitivityUnit = "\\volt\\metre\\tothe{-1}\\second\\tothe{2}";
+constexpr const char* kEnergyUnit = "\\volt\\tothe{2}\\second";
+
+std::string number(double value) {
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.exact(value);
+  return sink.text();
+}
+
+void add_text(XmlWriter& xml, const char* name, const std::string& words) {
+  xml.open(name).element("dcc:content", words, "lang=\"en\"").close();
+}
+
+// Administrative data
+
+void add_software(XmlWriter& xml) {
+  xml.open("dcc:dccSoftware").open("dcc:software");
+  add_text(xml, "dcc:name", "emax");
+  xml.element("dcc:release", app::kVersion).element("dcc:type", "application").close().close();
+}
+
+void add_core_data(XmlWriter& xml, const app::ReportContext& context) {
+  const app::Labels& labels = context.labels;
+  const std::string date = xml_text(labels.date);
+  const std::string mark = is_simulated(context) ? "SIMULATION " : "";
+  xml.open("dcc:coreData");
+  xml.element("dcc:countryCodeISO3166_1", xml_text(label_of(labels, CertificateLabel::kCountry)));
+  xml.element("dcc:usedLangCodeISO639_1", "en").element("dcc:mandatoryLangCodeISO639_1", "en");
+  xml.element("dcc:uniqueIdentifier", mark + xml_text(label_of(labels, CertificateLabel::kNumber)));
+  xml.element("dcc:beginPerformanceDate", date).element("dcc:endPerformanceDate", date);
+  xml.element("dcc:performanceLocation", "laboratory").close();
+}
+
+void add_item(XmlWriter& xml, const app::Labels& labels) {
+  const char* const maker = label_of(labels, CertificateLabel::kMaker);
+  const char* const model = label_of(labels, CertificateLabel::kModel);
+  xml.open("dcc:items").open("dcc:item");
+  add_text(xml, "dcc:name", xml_text(labels.device));
+  if (maker != nullptr) {
+    xml.open("dcc:manufacturer");
+    add_text(xml, "dcc:name", xml_text(maker));
+    xml.close();
+  }
+  if (model != nullptr) {
+    xml.element("dcc:model", xml_text(model));
+  }
+  xml.open("dcc:identifications").open("dcc:identification");
+  xml.element("dcc:issuer", "manufacturer").element("dcc:value", xml_text(labels.serial));
+  add_text(xml, "dcc:name", "Serial number");
+  xml.close().close().close().close();
+}
+
+// Name and address are one text here, which stands in both places.
+void add_contact(XmlWriter& xml, const char* element, const std::string& words,
+                 const char* country) {
+  xml.open(element);
+  add_text(xml, "dcc:name", words);
+  xml.open("dcc:location");
+  if (country != nullptr) {
+    xml.element("dcc:countryCode", xml_text(country));
+  }
+  add_text(xml, "dcc:further", words);
+  xml.close().close();
+}
+
+void add_statement(XmlWriter& xml, const char* name, const std::string& words) {
+  xml.open("dcc:statement");
+  add_text(xml, "dcc:name", name);
+  add_text(xml, "dcc:declaration", words);
+  xml.close();
+}
+
+void add_statements(XmlWriter& xml, const app::ReportContext& context) {
+  const char* const reference = label_of(context.labels, CertificateLabel::kReference);
+  xml.open("dcc:statements");
+  if (is_simulated(context)) {
+    add_statement(xml, "Simulation", app::kSimulationBanner);
+  }
+  add_statement(xml, "Uncertainty",
+                "Expanded uncertainties are standard uncertainties times the coverage factor k = "
+                "2, which for a normal distribution covers about 95 %.");
+  add_statement(xml, "Validity", "The results apply to the item tested only.");
+  add_statement(xml, "Traceability",
+                reference == nullptr ? "Not stated."
+                                     : "By the reference sensor " + xml_text(reference) + ".");
+  if (context.labels.note != nullptr) {
+    add_statement(xml, "Note", xml_text(context.labels.note));
+  }
+  xml.close();
+}
+
+void add_administrative_data(XmlWriter& xml, const app::ReportContext& context) {
+  const app::Labels& labels = context.labels;
+  xml.open("dcc:administrativeData");
+  add_software(xml);
+  add_core_data(xml, context);
+  add_item(xml, labels);
+  xml.open("dcc:calibrationLaboratory");
+  add_contact(xml, "dcc:contact", xml_text(label_of(labels, CertificateLabel::kLaboratory)),
+              label_of(labels, CertificateLabel::kCountry));
+  xml.close().open("dcc:respPersons").open("dcc:respPerson").open("dcc:person");
+  add_text(xml, "dcc:name", xml_text(labels.operated_by));
+  xml.close().element("dcc:mainSigner", "true").close().close();
+  add_contact(xml, "dcc:customer", xml_text(label_of(labels, CertificateLabel::kCustomer)),
+              nullptr);
+  add_statements(xml, context);
+  xml.close();
+}
+
+// Results
+
+// A value; without an expanded uncertainty where that is 0 or not known.
+void add_quantity(XmlWriter& xml, const char* name, double value, double expanded,
+                  const char* unit) {
+  xml.open("dcc:quantity");
+  add_text(xml, "dcc:name", name);
+  xml.open("si:real").element("si:value", number(value)).element("si:unit", unit);
+  if (expanded > 0.0 && std::isfinite(expanded)) {
+    xml.open("si:expandedUnc").element("si:uncertainty", number(expanded));
+    xml.element("si:coverageFactor", "2").element("si:coverageProbability", "0.95");
+    xml.element("si:distribution", "normal").close();
+  }
+  xml.close().close();
+}
+
+void open_result(XmlWriter& xml, const char* name) {
+  xml.open("dcc:result");
+  add_text(xml, "dcc:name", name);
+  xml.open("dcc:data");
+}
+
+double expanded_percent(const app::EnergyUncertainty& known) {
+  return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
+}
+
+void add_figure(XmlWriter& xml, const char* name, const EvaluationResults& results,
+                const app::FigureResults& figure) {
+  if (figure.exists()) {
+    add_quantity(xml, name, results.percent_of(figure.energy_v2s),
+                 expanded_percent(figure.uncertainty), "\\percent");
+  }
+}
+
+const char* name_of_energy(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "Largest energy of the error of any signal within the limit";
+    case Criterion::kEnergyDifference:
+      return "Largest energy difference of any signal within the limit";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "Largest energy of the in-band error of any signal within the limit";
+}
+
+void add_errors(XmlWriter& xml, const EvaluationResults& results) {
+  open_result(xml, "Largest errors");
+  add_figure(xml, "Worst rms error in band, constant delay taken out, of sensitivity times limit",
+             results, results.matched);
+  add_figure(xml, "Worst rms error in band, with its delay, of sensitivity times limit", results,
+             results.band);
+  const bool has_u = results.uncertainty.exists() && !results.is_damping_open();
+  add_quantity(xml, name_of_energy(results.settings.criterion), results.energy_v2s(),
+               has_u ? kCoverageFactor * results.uncertainty.u_v2s : 0.0, kEnergyUnit);
+  add_quantity(xml, "Limit of the signals", results.limit_mps2, 0.0, "\\metre\\second\\tothe{-2}");
+  add_quantity(xml, "Length of the signals", results.settings.duration_s, 0.0, "\\second");
+  add_quantity(xml, "Order of the reference filter, Butterworth",
+               static_cast<double>(results.settings.filter_order), 0.0, "\\one");
+  add_quantity(xml, "Cutoff of the reference filter", results.settings.cutoff_hz, 0.0, "\\hertz");
+  xml.close().close();
+}
+
+void add_parameters(XmlWriter& xml, const EvaluationResults& results) {
+  const Accelerometer& device = results.device.estimate;
+  const auto expanded = [&results](std::size_t i) {
+    return kCoverageFactor * std::sqrt(results.covariance(i, i));
+  };
+  open_result(xml, "Parameters of the model of second order");
+  add_quantity(xml, "Sensitivity", device.sensitivity, expanded(0), kSensitivityUnit);
+  add_quantity(xml, "Natural frequency", device.natural_frequency_hz, expanded(1), "\\hertz");
+  if (!results.is_damping_open()) {
+    add_quantity(xml, "Damping ratio", device.damping, expanded(2), "\\one");
+  }
+  xml.close().close();
+}
+
+// A column of the response: values, and expanded uncertainties unless they are empty.
+struct Column {
+  const char* name;
+  const char* unit;
+  std::string values;
+  std::string uncertainties;
+};
+
+void append_number(std::string& list, double value) {
+  list += (list.empty() ? "" : " ") + number(value);
+}
+
+void add_column(XmlWriter& xml, const Column& column) {
+  xml.open("dcc:quantity");
+  add_text(xml, "dcc:name", column.name);
+  xml.open("si:realListXMLList").element("si:valueXMLList", column.values);
+  xml.element("si:unitXMLList", column.unit);
+  if (!column.uncertainties.empty()) {
+    xml.open("si:expandedUncXMLList").element("si:uncertaintyXMLList", column.uncertainties);
+    xml.element("si:coverageFactorXMLList", "2");
+    xml.element("si:coverageProbabilityXMLList", "0.95").close();
+  }
+  xml.close().close();
+}
+
+void add_response(XmlWriter& xml, const EvaluationResults& results) {
+  if (results.source != app::Source::kPoints) {
+    return;
+  }
+  const FrequencyResponse& response = results.fit.response();
+  Column frequency = {"Frequency", "\\hertz", "", ""};
+  Column amplitude = {"Amplitude", kSensitivityUnit, "", ""};
+  Column phase = {"Phase", "\\degree", "", ""};
+  bool has_phases = true;
+  for (std::size_t i = 0; i < response.size(); ++i) {
+    const ResponsePoint& point = response.points()[i];
+    const double u = std::hypot(point.u_amplitude, response.common()[i] * point.amplitude);
+    append_number(frequency.values, point.frequency_hz);
+    append_number(amplitude.values, point.amplitude);
+    append_number(amplitude.uncertainties, kCoverageFactor * u);
+    has_phases = has_phases && is_phase_known(point);
+    append_number(phase.values, kDegreesPerRadian * point.phase_rad);
+    append_number(phase.uncertainties, kCoverageFactor * kDegreesPerRadian * point.u_phase_rad);
+  }
+  open_result(xml, "Frequency response");
+  xml.open("dcc:list");
+  add_column(xml, frequency);
+  add_column(xml, amplitude);
+  if (has_phases) {
+    add_column(xml, phase);
+  }
+  xml.close().close().close();
+}
+
+void add_methods(XmlWriter& xml, const app::ReportContext& context) {
+  const char* const procedure = label_of(context.labels, CertificateLabel::kProcedure);
+  xml.open("dcc:usedMethods");
+  if (context.measurement != nullptr) {
+    xml.open("dcc:usedMethod");
+    add_text(xml, "dcc:name", "Comparison with a reference sensor, back to back, stepped sine");
+    xml.element("dcc:norm", "ISO 16063-21").close();
+  }
+  xml.open("dcc:usedMethod");
+  add_text(xml, "dcc:name", "Largest error of any signal within a limit");
+  xml.element("dcc:norm", "JCGM 101:2008");
+  xml.element("dcc:reference", "K. Tomczyk, Energies 2020, 13(7), 1552");
+  if (procedure != nullptr) {
+    xml.element("dcc:reference", xml_text(procedure));
+  }
+  xml.close().close();
+}
+
+void add_measuring(XmlWriter& xml, const app::Labels& labels) {
+  const char* const reference = label_of(labels, CertificateLabel::kReference);
+  const char* const conditions = label_of(labels, CertificateLabel::kConditions);
+  if (reference != nullptr) {
+    xml.open("dcc:measuringEquipments").open("dcc:measuringEquipment");
+    add_text(xml, "dcc:name", "Reference sensor: " + xml_text(reference));
+    xml.close().close();
+  }
+  if (conditions != nullptr) {
+    xml.open("dcc:influenceConditions").open("dcc:influenceCondition");
+    add_text(xml, "dcc:name", "Conditions");
+    xml.open("dcc:data");
+    add_text(xml, "dcc:text", xml_text(conditions));
+    xml.close().close().close();
+  }
+}
+
+// Checks
+
+bool has_form(const std::string& text, std::string_view form) {
+  bool fits = text.size() == form.size();
+  for (std::size_t i = 0; fits && i < form.size(); ++i) {
+    const char c = text[i];
+    fits = form[i] == '0'   ? c >= '0' && c <= '9'
+           : form[i] == 'A' ? c >= 'A' && c <= 'Z'
+                            : c == form[i];
+  }
+  return fits;
+}
+
+bool is_date(const std::string& text) {
+  constexpr int kMonths = 12;
+  constexpr int kDays[kMonths] = {31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  if (!has_form(text, "0000-00-00")) {
+    return false;
+  }
+  const int month = std::stoi(text.substr(5, 2));
+  const int day = std::stoi(text.substr(8, 2));
+  return month >= 1 && month <= kMonths && day >= 1 && day <= kDays[month - 1];
+}
+
+}  // namespace
+
+Problem check_certificate_labels(const app::Labels& labels) {
+  struct Needed {
+    const char* option;
+    const char* words;
+  };
+  const Needed all[] = {
+      {"device", labels.device},
+      {"serial", labels.serial},
+      {"operator", labels.operated_by},
+      {"date", labels.date},
+      {"certificate-number", label_of(labels, CertificateLabel::kNumber)},
+      {"laboratory", label_of(labels, CertificateLabel::kLaboratory)},
+      {"country", label_of(labels, CertificateLabel::kCountry)},
+      {"customer", label_of(labels, CertificateLabel::kCustomer)},
+  };
+  std::string missing;
+  for (const Needed& needed : all) {
+    if (needed.words == nullptr || xml_text(needed.words).empty()) {
+      missing += (missing.empty() ? "--" : ", --") + std::string(needed.option);
+    }
+  }
+  if (!missing.empty()) {
+    return bad_input("--dcc: a digital certificate names more; expected also " + missing);
+  }
+  if (!is_date(xml_text(labels.date))) {
+    return bad_input("--date: \"" + printable(labels.date) +
+                     "\" given; expected YYYY-MM-DD with --dcc");
+  }
+  const char* const country = label_of(labels, CertificateLabel::kCountry);
+  return has_form(xml_text(country), "AA")
+             ? Problem{}
+             : bad_input("--country: \"" + printable(country) +
+                         "\" given; expected two capital letters, as DE, with --dcc");
+}
+
+std::string certificate_xml(const EvaluationResults& results, const app::ReportContext& context) {
+  XmlWriter xml;
+  xml.open("dcc:digitalCalibrationCertificate",
+           "xmlns:dcc=\"https://ptb.de/dcc\" xmlns:si=\"https://ptb.de/si\"\n"
+           "  xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n"
+           "  xsi:schemaLocation=\"https://ptb.de/dcc https://ptb.de/dcc/v3.2.1/dcc.xsd\"\n"
+           "  schemaVersion=\"3.2.1\"");
+  add_administrative_data(xml, context);
+  xml.open("dcc:measurementResults").open("dcc:measurementResult");
+  add_text(xml, "dcc:name", "Largest error of an accelerometer");
+  add_methods(xml, context);
+  add_measuring(xml, context.labels);
+  xml.open("dcc:results");
+  add_errors(xml, results);
+  add_parameters(xml, results);
+  add_response(xml, results);
+  xml.close().close().close().close();
+  return xml.text();
+}
+
+}  // namespace emax::desk

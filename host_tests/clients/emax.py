@@ -1,0 +1,98 @@
+"""emax from Python: reports of the program as data, lists of numbers as NumPy arrays. One file, to be copied.
+
+    import emax
+    result = emax.run_report(points="sensor.csv", limit=1)
+    result["energy"]["E"]          # V^2 s
+    result["trend"]["points"]      # an array with a row for each length: s, V^2 s
+
+firmware/desk/README.md lists all fields with their units. What is null in the file is None here.
+"""
+
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+
+import numpy
+
+FAULT = 3  # Exit status of a measurement that has failed.
+
+
+class EmaxError(RuntimeError):
+    """What the program says when it refuses, or when the measurement has failed.
+
+    status   2: bad input, 3: a fault of the measurement; others as the system has them.
+    results  What was measured until the fault, as `load()` gives it; None if nothing was.
+    """
+
+    def __init__(self, status: int, words: str, results=None):
+        super().__init__(words)
+        self.status, self.results = status, results
+
+
+def find_program() -> str:
+    """$EMAX, else `emax` on the PATH, else the one built beside this file."""
+    built = pathlib.Path(__file__).resolve().parents[2] / "build/host/emax"
+    return os.environ.get("EMAX") or shutil.which("emax") or str(built)
+
+
+def option_words(options: dict) -> list[str]:
+    """`reference_delay="none"` as `--reference-delay none`; lists with commas, True as a switch, None as nothing."""
+    words = []
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        words.append("--" + name.replace("_", "-"))
+        if value is not True:
+            is_list = isinstance(value, (list, tuple, numpy.ndarray))
+            words.append(",".join(str(item) for item in value) if is_list else str(value))
+    return words
+
+
+def with_arrays(value, name: str = ""):
+    """The same, with an array of double for every list of numbers and every table of them; None in one is NaN."""
+    if isinstance(value, dict):
+        return {key: with_arrays(item, key) for key, item in value.items()}
+    if not isinstance(value, list) or name == "warnings":
+        return value
+    leaves = [leaf for item in value for leaf in (item if isinstance(item, list) else [item])]
+    if all(leaf is None or (isinstance(leaf, (int, float)) and not isinstance(leaf, bool)) for leaf in leaves):
+        return numpy.array(value, dtype=float)
+    return [with_arrays(item) for item in value]
+
+
+def run(*arguments, program: str | None = None) -> bytes:
+    """What the program prints for these arguments. Raises EmaxError if its status is not 0."""
+    command = [program or find_program(), *map(str, arguments)]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    if done.returncode != 0:
+        kept = with_arrays(json.loads(done.stdout)) if done.returncode == FAULT and "--json" in command else None
+        raise EmaxError(done.returncode, done.stderr.decode().strip(), kept)
+    return done.stdout
+
+
+def run_report(*arguments, program: str | None = None, **options) -> dict:
+    """`emax report` with these words and options: `run_report("--adaptive", model=(1, 5000, 0.7), trend="none")`.
+
+    Returns the fields of results.json. With `out=DIRECTORY` the files are written as well; `load(DIRECTORY)` reads them.
+    """
+    return with_arrays(json.loads(run("report", *arguments, *option_words(options), "--json", program=program)))
+
+
+def load_table(path) -> dict:
+    """A CSV table of the program: an array for each column, in its order. Lines that begin with # are left out."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(line for line in file if not line.startswith("#"))
+    columns = numpy.array(rows, dtype=float).reshape(-1, len(head)).T
+    return dict(zip(head, columns))
+
+
+def load(path) -> dict:
+    """A results.json, or the directory that `--out` has written; then "tables" has its CSV tables by name."""
+    path = pathlib.Path(path)
+    if not path.is_dir():
+        return with_arrays(json.loads(path.read_text(encoding="utf-8")))
+    results = load(path / "results.json")
+    return results | {"tables": {table.stem: load_table(table) for table in sorted(path.glob("*.csv"))}}

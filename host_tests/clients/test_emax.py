@@ -1,0 +1,87 @@
+"""emax.py: what it makes of files and of the program, and that its example prints what the README shows.
+
+usage: test_emax.py PROGRAM PROJECT_DIRECTORY
+"""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+
+import emax
+
+PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+HERE = pathlib.Path(__file__).resolve().parent
+# DESIGN: the best known signal of the paper's device for T = 2 ms.
+MODEL, ENERGY, SWITCH = (1.037, 4073, 0.3182), 0.005115251359876, 1.0474909417558e-3
+
+
+class PythonTest(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = pathlib.Path(directory.name)
+
+    def report(self, *arguments, **options):
+        return emax.run_report(*arguments, program=PROGRAM, **options)
+
+    def test_report_of_a_model(self):
+        result = self.report(model=MODEL, trend=[0.002, 0.004])
+        self.assertAlmostEqual(result["energy"]["E"] / ENERGY, 1.0, delta=1e-12)
+        numpy.testing.assert_allclose(result["energy"]["switch_times"], [SWITCH], rtol=1e-10)
+        self.assertEqual(result["trend"]["points"].shape, (2, 2))
+        numpy.testing.assert_array_equal(result["trend"]["points"][:, 0], [0.002, 0.004])
+        self.assertIsNone(result["bench"])
+
+    def test_options_as_words(self):
+        words = emax.option_words({"model": numpy.array([1.0, 2.5]), "adaptive": True, "json": False, "note": None, "limit": 1})
+        self.assertEqual(words, ["--model", "1.0,2.5", "--adaptive", "--limit", "1"])
+
+    def test_what_becomes_an_array(self):
+        found = emax.with_arrays(json.loads('{"a": [1, null, 3], "b": [[1, 2], [3, 4]], "c": [], "d": ["x", "y"], '
+                                            '"e": [{"f": [5]}], "warnings": [], "g": [true]}'))
+        numpy.testing.assert_array_equal(found["a"], [1.0, numpy.nan, 3.0])
+        numpy.testing.assert_array_equal(found["b"], [[1.0, 2.0], [3.0, 4.0]])
+        self.assertEqual((found["c"].shape, found["d"], found["warnings"], found["g"]), ((0,), ["x", "y"], [], [True]))
+        numpy.testing.assert_array_equal(found["e"][0]["f"], [5.0])
+
+    def test_directory(self):
+        out = self.directory / "out"
+        printed = self.report(points=PROJECT / "host_tests/data/djb_a1800v.csv", trials=1000, trend="none", out=out)
+        found = emax.load(out)
+        self.assertEqual(sorted(found["tables"]), ["frequency_response", "histogram", "impulse_response", "signal", "trend"])
+        response = found["tables"]["frequency_response"]
+        self.assertEqual(list(response)[:2], ["f_hz", "amplitude"])
+        table = numpy.loadtxt(PROJECT / "host_tests/data/djb_a1800v.csv", delimiter=",", skiprows=1)
+        numpy.testing.assert_array_equal(response["f_hz"], table[:, 0])
+        numpy.testing.assert_array_equal(response["amplitude"], table[:, 1])
+        self.assertEqual(emax.load(out / "results.json")["energy"]["E"], printed["energy"]["E"])
+
+    def test_refusal(self):
+        with self.assertRaisesRegex(emax.EmaxError, r"^emax: --order: ") as caught:
+            self.report(model=MODEL, order=16)
+        self.assertEqual((caught.exception.status, caught.exception.results), (2, None))
+
+    def test_fault_keeps_what_was_measured(self):
+        with self.assertRaisesRegex(emax.EmaxError, "no device") as caught:
+            self.report(bench_fault="unplugged-device@4")
+        self.assertEqual(caught.exception.status, 3)
+        self.assertEqual(caught.exception.results["bench"]["fault"]["name"], "no device")
+        self.assertEqual(len(caught.exception.results["bench"]["budget"]), caught.exception.results["bench"]["points"])
+
+    def test_example_of_the_readme(self):
+        readme = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
+        shown = re.search(r"^```\n\$ python3 host_tests/clients/fifty_sensors\.py\n((?:.*\n)*?)```$", readme, re.MULTILINE)
+        done = subprocess.run([sys.executable, "-B", HERE / "fifty_sensors.py"], env=os.environ | {"EMAX": PROGRAM},
+                              capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr, done.stdout), (0, "", shown[1]))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

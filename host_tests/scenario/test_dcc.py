@@ -1,0 +1,169 @@
+"""The Digital Calibration Certificate that `--dcc` writes: its labels, its numbers, and PTB's schema where that is at hand.
+
+usage: test_dcc.py PROGRAM DATA_DIRECTORY [unittest arguments]
+
+EMAX_DCC_SCHEMA names a directory with dcc.xsd of version 3.2.1 (https://ptb.de/dcc/v3.2.1/dcc.xsd) and SI_Format.xsd of
+version 2.1.0 (https://ptb.de/si/v2.1.0/SI_Format.xsd), whose licence is not ours.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree
+
+from program_test import DATA, MODEL, QUICK, ProgramTest, main
+
+DCC, SI = "{https://ptb.de/dcc}", "{https://ptb.de/si}"
+TABLE = ["--points", DATA / "devices/piezo_a.csv", "--reference-uncertainty", "0.5"]
+LABELS = {
+    "device": "Piezo <A> & \"B\"", "serial": "47\n11", "operator": "J. Doe", "date": "2024-05-01", "certificate-number": "K-17",
+    "laboratory": "Lab, Town", "country": "DE", "customer": "Somebody, Elsewhere",
+}
+MORE = {"maker": "M", "model-name": "A 1800", "reference-id": "no. 7", "conditions": "23 \u00b0C", "procedure": "P-4", "note": "as new"}
+
+
+def options_of(labels: dict) -> list[str]:
+    return [f"--{name}={value}" for name, value in labels.items()]
+
+
+class DigitalCertificate(ProgramTest):
+    def certificate(self, *arguments):
+        result = self.run_program("report", *arguments, *QUICK, "--dcc", "c.xml", "--out", "out")
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        self.assert_valid(self.directory / "c.xml")
+        return xml.etree.ElementTree.parse(self.directory / "c.xml").getroot()
+
+    def assert_valid(self, path: pathlib.Path):
+        """By PTB's schema, with what it imports beside it; a signature is of no kind here, as there is none."""
+        given = os.environ.get("EMAX_DCC_SCHEMA")
+        if given is None or shutil.which("xmllint") is None:
+            return
+        schema = self.directory / "schema"
+        schema.mkdir(exist_ok=True)
+        text = (pathlib.Path(given) / "dcc.xsd").read_text(encoding="utf-8")
+        text = re.sub(r'schemaLocation="[^"]*SI_Format.xsd"', 'schemaLocation="SI_Format.xsd"', text)
+        text = re.sub(r'schemaLocation="[^"]*xmldsig[^"]*"', 'schemaLocation="signature.xsd"', text)
+        (schema / "dcc.xsd").write_text(text, encoding="utf-8")
+        shutil.copy(pathlib.Path(given) / "SI_Format.xsd", schema)
+        (schema / "signature.xsd").write_text(
+            '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema" targetNamespace="http://www.w3.org/2000/09/xmldsig#">'
+            '<xs:element name="Signature"/></xs:schema>')
+        command = ["xmllint", "--nonet", "--noout", "--schema", schema / "dcc.xsd", path]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, f"{path} validates\n"))
+
+    def test_schema_is_at_hand(self):
+        if "EMAX_DCC_SCHEMA" not in os.environ or shutil.which("xmllint") is None:
+            self.skipTest("set EMAX_DCC_SCHEMA to a directory with PTB's dcc.xsd and SI_Format.xsd, and install xmllint")
+        # It refuses what is no certificate.
+        self.certificate(*TABLE, *options_of(LABELS))
+        text = (self.directory / "c.xml").read_text(encoding="utf-8")
+        (self.directory / "bad.xml").write_text(text.replace("2024-05-01", "May"), encoding="utf-8")
+        with self.assertRaises(AssertionError):
+            self.assert_valid(self.directory / "bad.xml")
+
+    def test_labels_are_its_administrative_data(self):
+        root = self.certificate(*TABLE, *options_of(LABELS | MORE))
+        self.assertEqual((root.tag, root.get("schemaVersion")), (DCC + "digitalCalibrationCertificate", "3.2.1"))
+        data = root.find(DCC + "administrativeData")
+
+        def words(*path) -> str:
+            return data.find("/".join(DCC + name for name in path)).text
+
+        self.assertEqual(words("coreData", "uniqueIdentifier"), "K-17")
+        self.assertEqual(words("coreData", "countryCodeISO3166_1"), "DE")
+        self.assertEqual(words("coreData", "beginPerformanceDate"), "2024-05-01")
+        self.assertEqual(words("items", "item", "name", "content"), LABELS["device"])
+        self.assertEqual(words("items", "item", "model"), "A 1800")
+        self.assertEqual(words("items", "item", "manufacturer", "name", "content"), "M")
+        self.assertEqual(words("items", "item", "identifications", "identification", "value"), "47 11")
+        self.assertEqual(words("calibrationLaboratory", "contact", "name", "content"), "Lab, Town")
+        self.assertEqual(words("respPersons", "respPerson", "person", "name", "content"), "J. Doe")
+        self.assertEqual(words("customer", "name", "content"), "Somebody, Elsewhere")
+        everything = "\n".join(root.itertext())
+        for text in ["no. 7", "23 \u00b0C", "P-4", "as new", "the item tested only", "coverage factor k = 2"]:
+            self.assertIn(text, everything)
+        self.assertNotIn("SIMULATION", everything)
+
+    def quantities(self, root) -> dict:
+        found = {}
+        for quantity in root.iter(DCC + "quantity"):
+            real = quantity.find(SI + "real")
+            if real is not None:
+                U = real.find(f"{SI}expandedUnc/{SI}uncertainty")
+                name = quantity.find(f"{DCC}name/{DCC}content").text
+                found[name] = (float(real.find(SI + "value").text), None if U is None else float(U.text), real.find(SI + "unit").text)
+        return found
+
+    def test_numbers_are_those_of_the_results(self):
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        results = json.loads((self.directory / "out/results.json").read_text())
+        model, energy, band = results["model"], results["energy"], results["band"]
+        found = self.quantities(root)
+        sensitivity = "\\volt\\metre\\tothe{-1}\\second\\tothe{2}"
+        expected = {
+            "Sensitivity": (model["S"], 2 * model["uS"], sensitivity),
+            "Natural frequency": (model["f0"], 2 * model["uf0"], "\\hertz"),
+            "Damping ratio": (model["beta"], 2 * model["ubeta"], "\\one"),
+            "Largest energy of the error of any signal within the limit":
+                (energy["E"], results["uncertainty"]["U"], "\\volt\\tothe{2}\\second"),
+            "Worst rms error in band, constant delay taken out, of sensitivity times limit":
+                (band["matched"]["rms_percent"], band["matched"]["U_percent"], "\\percent"),
+            "Worst rms error in band, with its delay, of sensitivity times limit":
+                (band["rms_percent"], band["U_percent"], "\\percent"),
+            "Length of the signals": (energy["T"], None, "\\second"),
+        }
+        for name, (value, expanded, unit) in expected.items():
+            with self.subTest(name):
+                self.assertAlmostEqual(found[name][0] / value, 1.0, delta=1e-12)
+                self.assertEqual(found[name][1] is None, expanded is None)
+                if expanded is not None:
+                    self.assertAlmostEqual(found[name][1] / expanded, 1.0, delta=1e-12)
+                self.assertEqual(found[name][2], unit)
+
+    def test_response_is_the_table(self):
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        lists = {quantity.find(f"{DCC}name/{DCC}content").text: quantity.find(SI + "realListXMLList")
+                 for quantity in root.iter(DCC + "quantity") if quantity.find(SI + "realListXMLList") is not None}
+        self.assertEqual(list(lists), ["Frequency", "Amplitude", "Phase"])
+        rows = [line.split(",") for line in TABLE[1].read_text().splitlines() if line[0].isdigit()]
+
+        def numbers(name, *path):
+            return [float(number) for number in lists[name].find("/".join(SI + part for part in path)).text.split()]
+
+        for name, column, expanded in [("Frequency", 0, None), ("Amplitude", 1, 3), ("Phase", 2, 4)]:
+            values = numbers(name, "valueXMLList")
+            self.assertEqual(len(values), len(rows))
+            for value, row in zip(values, rows):
+                self.assertAlmostEqual(value, float(row[column]), delta=1e-12 * max(1.0, abs(value)))
+            if expanded is not None:
+                for U, row in zip(numbers(name, "expandedUncXMLList", "uncertaintyXMLList"), rows, strict=True):
+                    self.assertAlmostEqual(U / float(row[expanded]), 1.0, delta=1e-12)
+
+    def test_a_simulation_says_so(self):
+        root = self.certificate(*options_of(LABELS))
+        self.assertTrue(root.find(f".//{DCC}uniqueIdentifier").text.startswith("SIMULATION "))
+        self.assertIn("no real sensor was measured", "".join(root.itertext()))
+        self.assertIn("ISO 16063-21", "".join(root.itertext()))
+
+    def test_what_is_not_known_is_not_there(self):
+        found = self.quantities(self.certificate("--model", "1.037,4073,0.3182", *options_of(LABELS)))
+        self.assertEqual([expanded for _, expanded, _ in found.values()], [None] * len(found))
+        open_damping = self.certificate("--points", DATA / "tables/piezo_00.csv", "--time", "0.001", *options_of(LABELS))
+        self.assertNotIn("Damping ratio", self.quantities(open_damping))
+
+    def test_refused(self):
+        self.refuse(["report", *MODEL, "--dcc", "c.xml"], "--dcc: ", "expected also --device, --serial", "--customer")
+        for name, value, words in [("date", "1 May", "YYYY-MM-DD"), ("date", "2024-13-01", "YYYY-MM-DD"), ("country", "Germany", "two capital")]:
+            self.refuse(["report", *MODEL, "--dcc", "c.xml", *options_of(LABELS | {name: value})], f"--{name}: ", words)
+        for name in LABELS:
+            labels = {key: value for key, value in LABELS.items() if key != name}
+            self.refuse(["report", *MODEL, "--dcc", "c.xml", *options_of(labels)], f"expected also --{name}\n")
+        self.refuse(["report", *MODEL, "--dcc", "no/c.xml", *options_of(LABELS)], "no/c.xml", status=2)
+
+
+if __name__ == "__main__":
+    main()
