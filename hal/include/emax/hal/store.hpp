@@ -78,6 +78,13 @@ class Store {
   virtual Status do_program(std::uint32_t slot, std::uint32_t offset,
                             Span<const std::uint8_t> unit) noexcept = 0;
 
+  /// Ends a write whose slot was erased, well or not. A store that keeps the bytes of before until
+  /// then lets the new ones count here.
+  ///
+  /// @param[in] so_far kOk if all units are programmed and read back as they should.
+  /// @returns How the write ends.
+  virtual Status do_finish(std::uint32_t /*slot*/, Status so_far) noexcept { return so_far; }
+
   bool holds(std::uint32_t slot, std::size_t bytes) const noexcept;
   Status program(std::uint32_t slot, Span<const std::uint8_t> bytes) noexcept;
   Status verify(std::uint32_t slot, Span<const std::uint8_t> bytes) noexcept;
