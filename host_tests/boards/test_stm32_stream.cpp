@@ -269,6 +269,18 @@ TEST(StreamStart, MeasuresAConversionWhereItsClockIsInDoubt) {
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
 }
 
+TEST(StreamStart, ChecksTheInputsWithoutAStream) {
+  Bench bench(StreamFault::kNone, 0);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kOk);
+  EXPECT_FALSE(bench.stream().running());
+  EXPECT_TRUE(bench.stream().drive_is_at_zero());
+  bench.chip().hold_calibration(true);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kHardwareFault);
+  bench.chip().hold_calibration(false);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kOk);
+  EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
+}
+
 TEST(StreamStart, NeedsTheCrystal) {
   Bench bench(StreamFault::kNone, 0);
   bench.stream().set_clock_exact(false);

@@ -3,6 +3,7 @@
 
 #include "emax/board/bus_faults.hpp"
 #include "emax/board/dma_memory.hpp"
+#include "emax/board/flash_words.hpp"
 #include "emax/board/h743.hpp"
 #include "emax/board/registers.hpp"
 #include "emax/board/timebase.hpp"
@@ -48,11 +49,6 @@ std::uintptr_t address_of(std::uint32_t sector, std::uint32_t offset) noexcept {
 }
 
 bool has_bank_2() noexcept { return ((reg(kOptionControl) | reg(kOptions)) & kBanksSwapped) == 0; }
-
-std::uint32_t word_of(const std::uint8_t* bytes) noexcept {
-  return bytes[0] | std::uint32_t{bytes[1]} << 8U | std::uint32_t{bytes[2]} << 16U |
-         std::uint32_t{bytes[3]} << 24U;
-}
 
 bool is_idle(std::uint32_t most_us) noexcept {
   return wait_for([] { return (reg(kStatus) & kBusy) == 0; }, most_us);

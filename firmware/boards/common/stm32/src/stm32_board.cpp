@@ -27,6 +27,12 @@ void set_clocks(const Clocks& clocks) noexcept {
   drivers.console.start(clocks.console_hz, kConsoleBaud);
 }
 
+// The converters get ready, and a result takes no longer than a frame.
+std::uint32_t check_hardware() noexcept {
+  const bool is_right = drivers.stream.running() || drivers.stream.check_inputs() == Status::kOk;
+  return is_right ? 0 : app::kFirstBoardCheck;
+}
+
 }  // namespace
 
 void on_console() { drivers.console.on_interrupt(); }
@@ -71,8 +77,9 @@ app::SweepSettings bench_of_board() noexcept {
 }
 
 const app::Board& about() noexcept {
-  static constexpr app::Board kAbout = {EMAX_BOARD_NAME, drivers.serial.data(), nullptr, nullptr,
-                                        nullptr,         bench_of_board};
+  static constexpr app::Board kAbout = {
+      EMAX_BOARD_NAME, drivers.serial.data(), nullptr,       nullptr,
+      nullptr,         bench_of_board,        check_hardware};
   return kAbout;
 }
 

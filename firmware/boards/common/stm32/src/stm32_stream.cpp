@@ -57,6 +57,11 @@ bool Stm32Stream::force_to_zero() noexcept {
   return drive_is_at_zero();
 }
 
+Status Stm32Stream::check_inputs() noexcept {
+  const Status prepared = inputs_.prepare();
+  return inputs_.stop() ? prepared : Status::kHardwareFault;
+}
+
 Status Stm32Stream::do_start() noexcept {
   if (!is_clock_exact_.load(std::memory_order_relaxed) || !do_drive_is_at_zero()) {
     return Status::kHardwareFault;

@@ -54,6 +54,10 @@ class Stm32Stream final : public hal::AnalogStream {
   /// As `Stm32AdcPair::use()`.
   void use_inputs(const AdcPairSettings& settings) noexcept { inputs_.use(settings); }
 
+  /// For a self test, while no stream runs: the inputs on, and off again.
+  /// @returns As `Stm32AdcPair::prepare()`, or kHardwareFault if they do not stop.
+  Status check_inputs() noexcept;
+
   /// As `Stm32AdcPair::conversion_cycles()`.
   std::uint32_t conversion_cycles() const noexcept { return inputs_.conversion_cycles(); }
 
