@@ -35,9 +35,9 @@ class Deadline {
   }
 
  private:
-  // A look, which reads two registers, takes eight cycles or more, of a processor that may still
-  // be far from its full speed.
-  static constexpr std::uint32_t kMostLooksPer_us = EMAX_BOARD_CLOCK_HZ / 8'000'000;
+  // A look, which reads a register, takes more than four cycles, of a processor that may still be
+  // far from its full speed.
+  static constexpr std::uint32_t kMostLooksPer_us = EMAX_BOARD_CLOCK_HZ / 4'000'000;
   static constexpr std::uint32_t kFewLooks = 1000;
 
   const std::uint32_t begin_us_;
