@@ -114,12 +114,12 @@ TEST(LogStore, PassesTheSuiteOfStores) {
 }
 
 TEST(LogStore, HasRoomForTheRecordsOfABoard) {
-  // 10 slots of 1408 bytes in a sector of 128 KiB: 32 + 1408 + 2 * 32 = 1504 bytes each.
-  Bench bench({{10, 1408, 32}, 131072});
-  EXPECT_EQ(bench.store().places(), 131072U / 1504U);
-  EXPECT_EQ(bench.store().free_writes(), 87U + 77U);
+  // 10 slots of 1504 bytes in a sector of 128 KiB: 32 + 1504 + 2 * 32 = 1600 bytes each.
+  Bench bench({{10, 1504, 32}, 131072});
+  EXPECT_EQ(bench.store().places(), 131072U / 1600U);
+  EXPECT_EQ(bench.store().free_writes(), 81U + 71U);
   std::map<std::uint32_t, Bytes> kept;
-  for (std::uint32_t i = 0; i < 87 + 77; ++i) {
+  for (std::uint32_t i = 0; i < 81 + 71; ++i) {
     const Bytes bytes = content(1300, i);
     ASSERT_EQ(bench.write(i % 10, bytes), Status::kOk) << i;
     kept[i % 10] = bench.filled(bytes);
