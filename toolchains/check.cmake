@@ -98,7 +98,7 @@ foreach(source IN LISTS common)
 endforeach()
 file(GLOB drivers RELATIVE ${PROJECT_SOURCE_DIR}
   firmware/boards/common/stm32/src/*.cpp firmware/boards/nucleo_*/src/*.cpp)
-list(FILTER drivers EXCLUDE REGEX "/board[.]cpp$")
+list(FILTER drivers EXCLUDE REGEX "/(board|stm32_board|h743_memory)[.]cpp$")
 list(APPEND common ${drivers})
 foreach(source IN LISTS tidied common)
   add_test(NAME style.tidy.${source}

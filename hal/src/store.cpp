@@ -34,7 +34,7 @@ Status Store::write(std::uint32_t slot, Span<const std::uint8_t> bytes) noexcept
     return Status::kHardwareFault;
   }
   const Status programmed = program(slot, bytes);
-  return programmed == Status::kOk ? verify(slot, bytes) : programmed;
+  return do_finish(slot, programmed == Status::kOk ? verify(slot, bytes) : programmed);
 }
 
 bool Store::holds(std::uint32_t slot, std::size_t bytes) const noexcept {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "emax/board/g474.hpp"
-#include "emax/board/g474_clocks.hpp"
 #include "emax/board/registers.hpp"
+#include "emax/board/stm32_clocks.hpp"
 #include "emax/board/timebase.hpp"
 
 namespace emax::test {

@@ -3,7 +3,8 @@
 usage: mistake.py PATCH TREE IMAGE.ELF
 
 PATCH changes one source of the project, TREE is the build tree of the image without the mistake. Only that source is
-compiled, to a copy beside IMAGE.ELF, and the image is linked again. Exits with 1 and says why if the patch does not
+compiled, from a copy beside IMAGE.ELF, and the image is linked again. Of a header, the patch says "Compiled in:", and the
+source that includes it. Exits with 1 and says why if the patch does not
 apply or its result does not compile.
 """
 
@@ -26,6 +27,7 @@ class Change(NamedTuple):
 
 class Patch(NamedTuple):
     source: str  # Below the root of the project.
+    unit: str  # What is compiled: the source, or that which includes it.
     changes: list[Change]
 
 
@@ -42,7 +44,8 @@ def read_patch(path: str) -> Patch:
         old = "".join(line[1:] for line in lines if line[0] in " -")
         new = "".join(line[1:] for line in lines if line[0] in " +")
         changes.append(Change(old, new))
-    return Patch(target[1], changes)
+    unit = re.search(r"^Compiled in: (.*)$", head, flags=re.MULTILINE)
+    return Patch(target[1], unit[1] if unit else target[1], changes)
 
 
 def patched(path: str, patch: Patch) -> str:
@@ -85,11 +88,17 @@ def link_command(tree: str, built: str, image: str) -> list[str]:
 def main() -> int:
     path, tree, image = sys.argv[1:]
     patch = read_patch(path)
-    copy = os.path.splitext(image)[0] + ".cpp"
-    built = os.path.splitext(image)[0] + ".o"
+    stem = os.path.splitext(image)[0]
+    built = stem + ".o"
+    copy, first = stem + ".cpp", []
+    if patch.unit != patch.source:
+        copy, first = os.path.join(stem, patch.source.split("/include/")[1]), [f"-I{stem}"]
+        os.makedirs(os.path.dirname(copy), exist_ok=True)
     with open(copy, "w", encoding="utf-8") as file:
         file.write(patched(path, patch))
-    run(compile_command(tree, patch.source, copy, built), tree)
+    unit = os.path.join(ROOT, patch.unit) if first else copy
+    compiler, *options = compile_command(tree, patch.unit, unit, built)
+    run([compiler, *first, *options], tree)
     run(link_command(tree, built, image), tree)
     return 0
 

@@ -39,7 +39,7 @@ struct Mistake {
 Mistake read_mistake(const std::string& name) {
   const std::string text = text_of(kFolder / (name + ".patch"));
   const std::regex form(
-      R"((.*)\nShown by: (boot|sweep|save|overrun)\nFinding: (\w+)\n--- a/(.*)\n)");
+      R"((.*)\nShown by: (boot|sweep|save|overrun)\nFinding: (\w+)\n(?:Compiled in: .*\n)?--- a/(.*)\n)");
   std::smatch parts;
   EXPECT_TRUE(std::regex_search(text, parts, form, std::regex_constants::match_continuous)) << name;
   return parts.empty() ? Mistake{} : Mistake{parts[1], parts[2], parts[3], parts[4]};

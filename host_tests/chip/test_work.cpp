@@ -100,8 +100,8 @@ class Loopback : public RealImage {
 // frame n is that of frame n + latency, for each n, and of no other one.
 TEST_F(Loopback, TakesTheLatencyThatIsStated) {
   boot();
-  ExchangeRecord record(board->chip, function("G474Stream8do_start"),
-                        function("G474Stream11do_exchange"));
+  ExchangeRecord record(board->chip, function("Stm32Stream8do_start"),
+                        function("Stm32Stream11do_exchange"));
   board->chip.processor().watch_with(
       [&](std::uint32_t address, std::uint32_t) { record.on_block(address); });
   ask("SENS:REF:SENS 1.02;GAIN 1;:SENS:DEV:GAIN 1;:SOUR:LEV 1;:SENS:SWE:FREQ 500,1000,2000;*OPC?");
@@ -231,8 +231,8 @@ class Counts : public Loopback {
   }
   void add(const std::string& what, double count) { rows_.emplace_back(what, std::round(count)); }
   void count_sweep() {
-    WorkCounter counter(board->chip, function("G474Stream14wait_for_block"),
-                        function("G474Stream11do_exchange"));
+    WorkCounter counter(board->chip, function("Stm32Stream14wait_for_block"),
+                        function("Stm32Stream11do_exchange"));
     board->chip.processor().watch_with([&](std::uint32_t address, std::uint32_t instructions) {
       counter.on_block(address, instructions);
     });

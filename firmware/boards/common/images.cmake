@@ -26,6 +26,7 @@ endfunction()
 add_library(emax_board STATIC
   ${EMAX_BOARD_COMMON}/src/console_rings.cpp
   ${EMAX_BOARD_COMMON}/src/fault_report.cpp
+  ${EMAX_BOARD_COMMON}/src/log_store.cpp
   ${EMAX_BOARD_COMMON}/src/ram_store.cpp
   ${EMAX_BOARD_COMMON}/src/stack_mark.cpp
   ${EMAX_BOARD_COMMON}/src/startup.cpp

@@ -1,6 +1,6 @@
 # ST's board NUCLEO-G474RE: STM32G474RE, a Cortex-M4F.
 
-set(stm32 ${EMAX_BOARD_COMMON}/stm32)
+include(${EMAX_BOARD_COMMON}/stm32/stm32.cmake)
 emax_declare_board(
   CORE cortex-m4f
   CLOCK_HZ 170000000
@@ -10,22 +10,10 @@ emax_declare_board(
   CORE_TITLE STM32G474
   TABLE_CLOCK_MHZ 170
   INCLUDES
-    ${EMAX_BOARD_COMMON}/cortex_m/include
-    ${stm32}/include
+    ${EMAX_STM32_INCLUDES}
     include
   SOURCES
-    ${EMAX_BOARD_COMMON}/cortex_m/src/reset_cause.cpp
-    ${EMAX_BOARD_COMMON}/cortex_m/src/start.cpp
-    ${stm32}/src/converter_rings.cpp
-    ${stm32}/src/status_led.cpp
-    ${stm32}/src/stm32_clock.cpp
-    ${stm32}/src/stm32_dac.cpp
-    ${stm32}/src/stm32_uart.cpp
-    ${stm32}/src/stm32_watchdog.cpp
-    ${stm32}/src/timebase.cpp
-    ${stm32}/src/unique_id.cpp
+    ${EMAX_STM32_SOURCES}
     src/board.cpp
-    src/g474_adc_pair.cpp
     src/g474_clocks.cpp
-    src/g474_flash_store.cpp
-    src/g474_stream.cpp)
+    src/g474_flash_store.cpp)

@@ -1,6 +1,6 @@
-// The converters of an STM32G474 in the time of its processor, the output wired to both inputs. It
+// The converters of an STM32 in the time of its processor, the output wired to both inputs. It
 // knows what the stream's driver asks of them, and no more: whether that is right use of the chip
-// is not judged here.
+// is not judged here. Which chip, chain_facts.hpp says.
 #pragma once
 
 #include <algorithm>
@@ -9,24 +9,30 @@
 #include <functional>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "emax/board/converter_words.hpp"
 #include "emax/board/dma_memory.hpp"
-#include "emax/board/g474.hpp"
 #include "emax/board/registers.hpp"
 #include "emax/hal/word.hpp"
 
+#include "chain_facts.hpp"
 #include "hal/stream_conformance.hpp"
 
 namespace emax::test {
 
 class FakeConverters final : public FakeChip {
  public:
-  static constexpr std::uint64_t kCyclesPer_us = 170;
+  static constexpr std::uint64_t kCyclesPer_us = chip::kCyclesPer_us;
 
   /// @param[in] is_dac_ahead The DAC asks for its first value before the first trigger.
-  FakeConverters(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false)
-      : fault_(fault), at_frame_(at_frame), is_dac_ahead_(is_dac_ahead) {}
+  /// @param[in] is_dma_ahead Its output has fetched, and counted, one more from memory.
+  FakeConverters(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false,
+                 bool is_dma_ahead = false)
+      : fault_(fault),
+        at_frame_(at_frame),
+        is_dac_ahead_(is_dac_ahead),
+        is_dma_ahead_(is_dma_ahead) {}
 
   /// An access takes this long: more makes a long run short.
   void set_access_cycles(std::uint64_t cycles) { access_cycles_ = cycles; }
@@ -45,17 +51,27 @@ class FakeConverters final : public FakeChip {
   /// From now on the ADCs take every second trigger only.
   void halve_inputs() { are_inputs_halved_ = true; }
   void stop_output_dma() { is_output_dma_dead_ = true; }
-  void set_underrun() { registers_[board::kDac1 + 0x34] |= 1U << 13; }
-  void set_overrun() { registers_[board::kAdc2] |= 1U << 4; }
+  void hold_regulator(bool held) { is_regulator_held_ = held; }
+  /// What a result takes, as on a chip whose ADCs' clock is another one.
+  void set_conversion_us(std::uint64_t us) { conversion_cycles_ = us * kCyclesPer_us; }
+  void set_underrun() { registers_[chip::kDac + 0x34] |= 1U << 13; }
+  void set_overrun() { registers_[chip::kAdc2] |= 1U << 4; }
 
   std::uint32_t read(std::uintptr_t address, unsigned /*bytes*/) override {
     pass(access_cycles_);
     if (address == 0x40000024) {
       return static_cast<std::uint32_t>(cycles_ / kCyclesPer_us);
     }
-    const bool is_control = address == board::kAdc1 + 0x08 || address == board::kAdc2 + 0x08;
+    const bool is_control = address == chip::kAdc1 + 0x08 || address == chip::kAdc2 + 0x08;
     if (is_control && cycles_ >= calibrated_at_ && !is_calibration_held_) {
       registers_[address] &= ~(1U << 31);
+    }
+    if (address == 0xE0001004) {
+      return static_cast<std::uint32_t>(cycles_);
+    }
+    if ((address == chip::kAdc1 || address == chip::kAdc2) && !is_regulator_held_ &&
+        (registers_[address + 0x08] & 1U << 28) != 0) {
+      return registers_[address] | chip::kRegulatorReady;
     }
     return registers_[address];
   }
@@ -63,38 +79,41 @@ class FakeConverters final : public FakeChip {
   void write(std::uintptr_t address, std::uint32_t value) override {
     pass(access_cycles_);
     switch (address) {
-      case board::kDma1 + 0x04:
-        registers_[board::kDma1] &= ~value;
+      case chip::kDmaClear:
+        registers_[chip::kDmaStatus] &= ~value;
         return;
-      case board::kTim6:
+      case chip::kTimer:
         if ((value & 1U) != 0 && (registers_[address] & 1U) == 0) {
-          next_trigger_ = cycles_ + registers_[board::kTim6 + 0x2C] + 1;
+          next_trigger_ = cycles_ + frame_cycles();
         }
         break;
-      case board::kDac1 + 0x0C:
+      case chip::kDac + 0x0C:
         registers_[address] = value;
-        if ((registers_[board::kDac1] & 2U) == 0) {
+        if ((registers_[chip::kDac] & 2U) == 0) {
           put_out(value, false);
         }
         return;
-      case board::kDac1 + 0x34:
+      case chip::kDac + 0x34:
         registers_[address] &= ~value;
         return;
-      case board::kDac1:
+      case chip::kDac:
         control_dac(value);
         return;
-      case board::kAdc1 + 0x08:
-      case board::kAdc2 + 0x08:
+      case chip::kAdc1 + 0x08:
+      case chip::kAdc2 + 0x08:
         control_adc(address - 0x08, value);
         return;
-      case board::kAdc1:
-      case board::kAdc2:
+      case chip::kAdc1:
+      case chip::kAdc2:
         registers_[address] &= ~value;
         return;
-      case kInputChannel:
-      case kOutputChannel:
+      case chip::kInputDma:
+      case chip::kOutputDma:
         if ((value & 1U) != 0 && (registers_[address] & 1U) == 0) {
           sizes_[address] = registers_[address + 4];
+          if (address == chip::kOutputDma && is_dma_ahead_) {
+            prefetched_ = *next_of(address);
+          }
         }
         break;
       default:
@@ -104,20 +123,13 @@ class FakeConverters final : public FakeChip {
   }
 
  private:
-  static constexpr std::uintptr_t kInputChannel = board::kDma1 + 0x08;
-  static constexpr std::uintptr_t kOutputChannel = board::kDma1 + 0x1C;
-  // 32 times 25 cycles of the ADC's clock, each of four.
-  static constexpr std::uint64_t kConversionCycles = 32 * 25 * 4;
-  // Longer than a driver waits.
-  static constexpr std::uint64_t kSlowCalibration_us = 5'500;
-
   void pass(std::uint64_t cycles) {
     const std::uint64_t until = cycles_ + cycles;
     while (runs() && next_trigger_ <= until) {
       cycles_ = std::max(cycles_, next_trigger_);
       finish_conversion();
       trigger();
-      next_trigger_ += registers_[board::kTim6 + 0x2C] + 1;
+      next_trigger_ += frame_cycles();
     }
     cycles_ = std::max(cycles_, until);
     finish_conversion();
@@ -129,23 +141,27 @@ class FakeConverters final : public FakeChip {
     }
   }
 
-  bool runs() { return (registers_[board::kTim6] & 1U) != 0 && !are_triggers_dead_; }
+  std::uint64_t frame_cycles() {
+    return (registers_[chip::kTimer + 0x2C] + std::uint64_t{1}) * chip::kCyclesPerTick;
+  }
+  bool runs() { return (registers_[chip::kTimer] & 1U) != 0 && !are_triggers_dead_; }
+  bool is_triggered() { return (registers_[chip::kAdc1 + 0x0C] & 3U << 10) != 0; }
   bool is_on(std::uintptr_t channel) { return (registers_[channel] & 1U) != 0; }
 
   void trigger() {
-    registers_[board::kTim6 + 0x10] |= 1U;
+    registers_[chip::kTimer + 0x10] |= 1U;
     strike();
-    if ((registers_[board::kDac1] & 3U) == 3U) {
-      put_out(registers_[board::kDac1 + 0x0C], true);
+    if ((registers_[chip::kDac] & 3U) == 3U) {
+      put_out(registers_[chip::kDac + 0x0C], true);
       fetch();
     }
     ++triggers_;
     const bool listens =
         lost_frames_ == 0 && !is_deaf_ && !(are_inputs_halved_ && triggers_ % 2 == 0);
     lost_frames_ -= lost_frames_ > 0 ? 1 : 0;
-    if (listens && (registers_[board::kAdc1 + 0x08] & 4U) != 0) {
-      conversion_end_ = cycles_ + kConversionCycles;
-      converted_ = registers_[board::kDac1 + 0x2C] << 4U;
+    if (listens && is_triggered() && (registers_[chip::kAdc1 + 0x08] & 4U) != 0) {
+      conversion_end_ = cycles_ + conversion_cycles_;
+      converted_ = registers_[chip::kDac + 0x2C] << 4U;
     }
   }
 
@@ -159,7 +175,7 @@ class FakeConverters final : public FakeChip {
     } else if (fault_ == StreamFault::kLateBlock) {
       is_deaf_ = true;
     } else if (fault_ == StreamFault::kHardwareFault) {
-      registers_[board::kDma1] |= 1U << 3;
+      registers_[chip::kDmaStatus] |= chip::kInputError;
     } else {
       return;
     }
@@ -171,9 +187,14 @@ class FakeConverters final : public FakeChip {
       return;
     }
     conversion_end_ = 0;
-    if (is_on(kInputChannel) && registers_[board::kDmamux] == 5) {
+    if (!is_triggered()) {
+      registers_[chip::kAdc1] |= 1U << 2;
+      registers_[chip::kAdc1 + 0x08] &= ~4U;
+      return;
+    }
+    if (is_on(chip::kInputDma) && registers_[chip::kMux] == chip::kAdcRequest) {
       const std::uint32_t device = with_noise(converted_);
-      *next_of(kInputChannel) = device << 16U | with_noise(converted_);
+      *next_of(chip::kInputDma) = device << 16U | with_noise(converted_);
     }
   }
 
@@ -187,10 +208,11 @@ class FakeConverters final : public FakeChip {
   }
 
   void fetch() {
-    const bool asks = (registers_[board::kDac1] & 1U << 12) != 0;
-    if (asks && is_on(kOutputChannel) && !is_output_dma_dead_ &&
-        registers_[board::kDmamux + 4] == 6) {
-      registers_[board::kDac1 + 0x0C] = *next_of(kOutputChannel);
+    const bool asks = (registers_[chip::kDac] & 1U << 12) != 0;
+    if (asks && is_on(chip::kOutputDma) && !is_output_dma_dead_ &&
+        registers_[chip::kMux + 4] == chip::kDacRequest) {
+      const std::uint32_t next = *next_of(chip::kOutputDma);
+      registers_[chip::kDac + 0x0C] = is_dma_ahead_ ? std::exchange(prefetched_, next) : next;
     }
   }
 
@@ -199,31 +221,32 @@ class FakeConverters final : public FakeChip {
     const std::uint32_t size = sizes_[channel];
     volatile std::uint32_t* at = dma_memory(registers_[channel + 0x0C]) + (size - left);
     --left;
-    if (channel == kOutputChannel && (left == size / 2 || left == 0)) {
+    if (channel == chip::kOutputDma && (left == size / 2 || left == 0)) {
       const bool is_end = left == 0;
-      registers_[board::kDma1] |= is_end ? 1U << 5 : 1U << 6;
-      is_interrupt_pending_ = (registers_[channel] & (is_end ? 2U : 4U)) != 0;
+      registers_[chip::kDmaStatus] |= is_end ? chip::kOutputEnd : chip::kOutputHalf;
+      is_interrupt_pending_ =
+          (registers_[channel] & (is_end ? chip::kEndInterrupt : chip::kHalfInterrupt)) != 0;
     }
     left = left == 0 ? size : left;
     return at;
   }
 
   void control_dac(std::uint32_t value) {
-    const bool begins = (value & 1U << 12) != 0 && (registers_[board::kDac1] & 1U << 12) == 0;
-    registers_[board::kDac1] = value;
+    const bool begins = (value & 1U << 12) != 0 && (registers_[chip::kDac] & 1U << 12) == 0;
+    registers_[chip::kDac] = value;
     if (begins && is_dac_ahead_) {
       fetch();
     }
     if ((value & 2U) == 0) {
-      put_out(registers_[board::kDac1 + 0x0C], false);
+      put_out(registers_[chip::kDac + 0x0C], false);
     }
   }
 
   void put_out(std::uint32_t left_justified, bool is_frame) {
-    registers_[board::kDac1 + 0x2C] = left_justified >> 4U & 0xFFFU;
+    registers_[chip::kDac + 0x2C] = left_justified >> 4U & 0xFFFU;
     // While it is off, the resistors outside keep the pin at zero volts of drive.
-    const bool is_on = (registers_[board::kDac1] & 1U) != 0;
-    const hal::Word word = is_on ? board::word_of_dac(registers_[board::kDac1 + 0x2C]) : 0;
+    const bool is_on = (registers_[chip::kDac] & 1U) != 0;
+    const hal::Word word = is_on ? board::word_of_dac(registers_[chip::kDac + 0x2C]) : 0;
     if (is_frame || word != drive_.last) {
       const std::int64_t step = std::abs(std::int64_t{word} - std::int64_t{drive_.last});
       // 12 bits cannot tell -2^31 from the word above it, which is the least within any limits.
@@ -240,9 +263,12 @@ class FakeConverters final : public FakeChip {
   void control_adc(std::uintptr_t adc, std::uint32_t value) {
     std::uint32_t& control = registers_[adc + 0x08];
     const std::uint32_t keeps = control & 0x7U;
-    control = (value & 0xF0000000U) | keeps | (value & 0x5U);
+    control = (value & chip::kControlStays) | keeps | (value & 0x5U);
+    if ((value & 4U) != 0 && adc == chip::kAdc1 && !is_triggered()) {
+      conversion_end_ = cycles_ + conversion_cycles_;
+    }
     if ((value & 1U << 31) != 0) {
-      calibrated_at_ = cycles_ + (refuses_start() ? kSlowCalibration_us * kCyclesPer_us : 0);
+      calibrated_at_ = cycles_ + (refuses_start() ? chip::kSlowCalibration_us * kCyclesPer_us : 0);
     }
     if ((value & 1U) != 0) {
       registers_[adc] |= 1U;
@@ -268,6 +294,9 @@ class FakeConverters final : public FakeChip {
   StreamFault fault_;
   std::uint64_t at_frame_;
   bool is_dac_ahead_;
+  bool is_dma_ahead_;
+  std::uint32_t prefetched_ = 0;
+  std::uint64_t conversion_cycles_ = chip::kConversionCycles;
   DriveProbe drive_;
   std::uint64_t access_cycles_ = 8;
   std::uint64_t cycles_ = 1;
@@ -280,6 +309,7 @@ class FakeConverters final : public FakeChip {
   bool is_deaf_ = false;
   bool is_noisy_ = false;
   bool is_calibration_held_ = false;
+  bool is_regulator_held_ = false;
   std::uint64_t calibrated_at_ = 0;
   bool are_triggers_dead_ = false;
   bool are_inputs_halved_ = false;

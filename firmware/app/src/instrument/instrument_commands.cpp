@@ -71,7 +71,11 @@ void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
     call.wait();
     return;
   }
-  call.answer().integer(run_self_test(i.sequencer().borrow<SelfTestWorkspace>()));
+  std::uint32_t failed = run_self_test(i.sequencer().borrow<SelfTestWorkspace>());
+  if (failed == 0 && i.board().check_hardware != nullptr) {
+    failed = i.board().check_hardware();
+  }
+  call.answer().integer(failed);
 }
 
 namespace {

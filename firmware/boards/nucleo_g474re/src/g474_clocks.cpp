@@ -1,8 +1,8 @@
 // Step by step from 16 to 170 MHz.
-#include "emax/board/g474_clocks.hpp"
-
 #include "emax/board/g474.hpp"
+#include "emax/board/register_bits.hpp"
 #include "emax/board/registers.hpp"
+#include "emax/board/stm32_clocks.hpp"
 #include "emax/board/timebase.hpp"
 
 namespace emax::board {
@@ -55,15 +55,8 @@ constexpr std::uint32_t kNormalRange = 1U << 8;
 constexpr std::uint32_t kMostCrystal_us = 100'000;
 constexpr std::uint32_t kMost_us = 10'000;
 
-// Reads it back, so that the clock is on before its peripheral is asked for anything.
-void switch_on(std::uintptr_t enable, std::uint32_t bits) noexcept {
-  reg(enable) |= bits;
-  const std::uint32_t is_on = reg(enable);
-  (void)is_on;
-}
-
 bool is_set(std::uintptr_t address, std::uint32_t bits, std::uint32_t most_us) noexcept {
-  return wait_for([=] { return (reg(address) & bits) == bits; }, most_us);
+  return become(address, bits, bits, most_us);
 }
 
 void switch_to(std::uint32_t source) noexcept {
@@ -110,9 +103,18 @@ bool switch_to_pll(std::uint32_t source) noexcept {
 
 Clocks from_internal() noexcept {
   const bool is_fast = prepare_speed() && switch_to_pll(kPllOfInternal);
-  const Clocks clocks = {is_fast ? kPll_hz : kInternal_hz, false};
-  start_timebase(clocks.hz);
-  return clocks;
+  const std::uint32_t hz = is_fast ? kPll_hz : kInternal_hz;
+  start_timebase(hz);
+  return {hz, hz, false};
+}
+
+// All that the board uses.
+void start_peripheral_clocks() noexcept {
+  switch_on(kAhb1Enable, 1U << 0 | 1U << 2);                        // DMA1, DMAMUX.
+  switch_on(kAhb2Enable, 1U << 0 | 1U << 13 | 1U << 16);            // GPIOA, ADC1 and 2, DAC1.
+  switch_on(kApb1Enable1, 1U << 0 | 1U << 4 | 1U << 5 | 1U << 28);  // TIM2, 6, 7, power.
+  switch_on(kApb1Enable2, 1U << 0);                                 // LPUART1,
+  reg(kKernelClocks) = 1U << 10;                                    // by the processor's clock.
 }
 
 }  // namespace
@@ -130,7 +132,7 @@ Clocks start_clocks() noexcept {
   }
   start_timebase(kPll_hz);
   reg(kControl) |= kCrystalWatched;
-  return {kPll_hz, true};
+  return {kPll_hz, kPll_hz, true};
 }
 
 bool take_crystal_lost() noexcept {
@@ -146,14 +148,6 @@ Clocks restart_clocks() noexcept {
   (void)is_set(kControl, kInternalReady, kMost_us);
   start_timebase(kInternal_hz);
   return from_internal();
-}
-
-void start_peripheral_clocks() noexcept {
-  switch_on(kAhb1Enable, 1U << 0 | 1U << 2);                        // DMA1, DMAMUX.
-  switch_on(kAhb2Enable, 1U << 0 | 1U << 13 | 1U << 16);            // GPIOA, ADC1 and 2, DAC1.
-  switch_on(kApb1Enable1, 1U << 0 | 1U << 4 | 1U << 5 | 1U << 28);  // TIM2, 6, 7, power.
-  switch_on(kApb1Enable2, 1U << 0);                                 // LPUART1,
-  reg(kKernelClocks) = 1U << 10;                                    // by the processor's clock.
 }
 
 }  // namespace emax::board

@@ -2,6 +2,7 @@
 #include "emax/board/g474_flash_store.hpp"
 
 #include "emax/board/dma_memory.hpp"
+#include "emax/board/flash_words.hpp"
 #include "emax/board/g474.hpp"
 #include "emax/board/registers.hpp"
 #include "emax/board/timebase.hpp"
@@ -46,11 +47,6 @@ std::uint32_t page_of(std::uint32_t slot) noexcept {
 
 std::uintptr_t address_of(std::uint32_t slot, std::uint32_t offset) noexcept {
   return kFlashBank2 + std::uintptr_t{page_of(slot)} * kFlashPageBytes + offset;
-}
-
-std::uint32_t word_of(const std::uint8_t* bytes) noexcept {
-  return bytes[0] | std::uint32_t{bytes[1]} << 8U | std::uint32_t{bytes[2]} << 16U |
-         std::uint32_t{bytes[3]} << 24U;
 }
 
 bool is_idle(std::uint32_t most_us) noexcept {

@@ -156,6 +156,15 @@ void end_in_reset(const std::uint32_t* frame) {
 }
 }
 
+void set_memory_region(std::uint32_t number, std::uintptr_t base,
+                       std::uint32_t attributes) noexcept {
+  constexpr std::uint32_t kRegionEnable = 1U << 0;
+  asm volatile("dsb" ::: "memory");
+  reg(kMpuBase) = base | kMpuBaseValid | number;
+  reg(kMpuSize) = attributes | kRegionEnable;
+  asm volatile("dsb\nisb" ::: "memory");
+}
+
 void reset() noexcept {
   asm volatile("dsb" ::: "memory");
   reg(kAircr) = kResetRequest;

@@ -26,8 +26,9 @@ std::uint32_t ConverterRings::nearest(std::uint32_t left, std::uint32_t expected
   return ahead < ring_frames_ / 2 ? expected + ahead : expected + ahead - ring_frames_;
 }
 
-void ConverterRings::start(bool is_output_ahead) noexcept {
+void ConverterRings::start(bool is_output_ahead, std::uint32_t fetched) noexcept {
   ahead_ = is_output_ahead ? 1 : 0;
+  fetched_ = fetched;
   next_ = 0;
   input_ = 0;
   input_lag_ = 0;
@@ -47,7 +48,8 @@ RingState ConverterRings::settle(const RingLook& look) noexcept {
   if (input_lag_ > kMostDrift) {
     return RingState::kLost;
   }
-  return output_lead_ > ahead_ + kMostDrift ? RingState::kOutputStopped : RingState::kHere;
+  return output_lead_ > ahead_ + fetched_ + kMostDrift ? RingState::kOutputStopped
+                                                       : RingState::kHere;
 }
 
 RingState ConverterRings::look(const RingLook& look) noexcept {

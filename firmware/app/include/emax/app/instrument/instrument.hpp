@@ -45,7 +45,12 @@ struct Board {
   MemoryUse (*memory_use)() noexcept = nullptr;
   /// Makes the defaults of the sweep where `bench` is null, for a board without room to keep them.
   SweepSettings (*make_bench)() noexcept = nullptr;
+  /// What *TST? answers if all else is right: 0, or a number of the board's own, from
+  /// kFirstBoardCheck on. Called while nothing runs. Null where there is nothing to check.
+  std::uint32_t (*check_hardware)() noexcept = nullptr;
 };
+
+inline constexpr std::uint32_t kFirstBoardCheck = 901;
 
 /// The hardware of an instrument.
 struct Ports {

@@ -9,12 +9,17 @@
 
 namespace emax::board {
 
-inline constexpr std::uint32_t kUnitBytes = 8;
-inline constexpr std::uint32_t kSlotBytes =
-    (app::kMaxSavedSettingsBytes + app::RecordStore::kFrameBytes + kUnitBytes - 1) / kUnitBytes *
-    kUnitBytes;
-static_assert(kSlotBytes >= app::kSavedIdentificationBytes + app::RecordStore::kFrameBytes);
+inline constexpr std::uint32_t kRecordBytes =
+    app::kMaxSavedSettingsBytes + app::RecordStore::kFrameBytes;
+static_assert(kRecordBytes >= app::kSavedIdentificationBytes + app::RecordStore::kFrameBytes);
 
-inline constexpr hal::StoreFormat kStoreFormat = {2 * app::kSavedRecords, kSlotBytes, kUnitBytes};
+/// @param[in] unit_bytes What the board's memory programs at once.
+constexpr hal::StoreFormat store_format(std::uint32_t unit_bytes) noexcept {
+  return {2 * app::kSavedRecords, (kRecordBytes + unit_bytes - 1) / unit_bytes * unit_bytes,
+          unit_bytes};
+}
+
+/// Of boards that program double words, or whose memory takes anything.
+inline constexpr hal::StoreFormat kStoreFormat = store_format(8);
 
 }  // namespace emax::board

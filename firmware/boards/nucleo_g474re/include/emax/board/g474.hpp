@@ -25,8 +25,6 @@ inline constexpr std::uintptr_t kUniqueId = 0x1FFF7590;  ///< Three words.
 inline constexpr std::uintptr_t kFlashBank2 = 0x08040000;
 
 inline constexpr unsigned kDma1Channel2Interrupt = 12;
-inline constexpr unsigned kTim2Interrupt = 28;
-inline constexpr unsigned kTim7Interrupt = 55;
 inline constexpr unsigned kLpuart1Interrupt = 91;
 
 }  // namespace emax::board

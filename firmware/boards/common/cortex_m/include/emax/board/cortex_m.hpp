@@ -64,4 +64,11 @@ inline void trigger_interrupt(unsigned number) noexcept {
   reg(0xE000E200 + 4 * (number / 32)) = 1U << (number % 32);
 }
 
+/// Adds a region of the memory protection unit, once it is on.
+///
+/// @param[in] number     2 or more: 0 and 1 guard stack and code. A higher one wins.
+/// @param[in] attributes As the unit's register has them, with the size, and without its enable.
+void set_memory_region(std::uint32_t number, std::uintptr_t base,
+                       std::uint32_t attributes) noexcept;
+
 }  // namespace emax::board

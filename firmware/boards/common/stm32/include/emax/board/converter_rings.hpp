@@ -34,8 +34,12 @@ class ConverterRings {
   constexpr ConverterRings(std::uint32_t ring_frames, std::uint32_t block_frames) noexcept
       : ring_frames_(ring_frames), block_frames_(block_frames) {}
 
-  /// Before the first trigger. @param[in] is_output_ahead The DMA has fetched the first value.
-  void start(bool is_output_ahead) noexcept;
+  /// Before the first trigger.
+  ///
+  /// @param[in] is_output_ahead The DAC has the first value from DMA.
+  /// @param[in] fetched What the DMA has counted without the DAC: 1 if it fetches ahead of
+  /// requests.
+  void start(bool is_output_ahead, std::uint32_t fetched = 0) noexcept;
 
   /// Until the first block, which is dropped, has come in; to be called before half a ring has.
   /// @returns kHere once it has, and both directions have gone with the clock; from then on
@@ -66,6 +70,7 @@ class ConverterRings {
   const std::uint32_t ring_frames_;
   const std::uint32_t block_frames_;
   std::uint32_t ahead_ = 0;
+  std::uint32_t fetched_ = 0;
   std::uint32_t next_ = 0;         // The block's first frame.
   std::uint32_t input_ = 0;        // Frames that had come in at the last look.
   std::uint32_t input_lag_ = 0;    // Of the inputs behind the clock.

@@ -23,20 +23,26 @@ inline std::uint32_t timebase_us() noexcept { return reg(kTimebase + 0x24); }
 /// many looks that it must be.
 class Deadline {
  public:
-  explicit Deadline(std::uint32_t most_us) noexcept : begin_us_(timebase_us()), most_us_(most_us) {}
+  explicit Deadline(std::uint32_t most_us) noexcept
+      : begin_us_(timebase_us()),
+        most_us_(most_us),
+        most_looks_(kFewLooks + most_us * kMostLooksPer_us) {}
 
   /// @returns True once more than the time has passed. One look.
   bool passed() noexcept {
     ++looks_;
-    return timebase_us() - begin_us_ > most_us_ || looks_ > kMaxLooks;
+    return timebase_us() - begin_us_ > most_us_ || looks_ > most_looks_;
   }
 
  private:
-  // A look takes ten cycles or more: a quarter of a second at 170 MHz, longer than any wait.
-  static constexpr std::uint32_t kMaxLooks = 4'000'000;
+  // A look, which reads a register, takes more than four cycles, of a processor that may still be
+  // far from its full speed.
+  static constexpr std::uint32_t kMostLooksPer_us = EMAX_BOARD_CLOCK_HZ / 4'000'000;
+  static constexpr std::uint32_t kFewLooks = 1000;
 
   const std::uint32_t begin_us_;
   const std::uint32_t most_us_;
+  const std::uint32_t most_looks_;
   std::uint32_t looks_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The driver of the NUCLEO-G474RE's converters, run on the PC over fake registers: it keeps the
-// contract of an analog stream, and tells what goes wrong with the hardware within two blocks.
+// The driver of an STM32's converters, run on the PC over the fake registers of one chip: it keeps
+// the contract of an analog stream, and tells what goes wrong with the hardware within two blocks.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 #include "emax/app/base/in_place.hpp"
 #include "emax/app/instrument/instrument.hpp"
-#include "emax/board/g474_stream.hpp"
+#include "emax/board/stm32_stream.hpp"
 
 #include "boards/fakes/fake_converters.hpp"
 #include "hal/stream_conformance.hpp"
@@ -23,10 +23,9 @@
 namespace emax::test {
 namespace {
 
-using board::G474Stream;
 using board::kBlockFrames;
-using board::kFrame_us;
 using board::kRingFrames;
+using board::Stm32Stream;
 using hal::Exchange;
 using hal::Frame;
 using hal::Word;
@@ -34,37 +33,40 @@ using hal::Word;
 /// A chip and the driver on it, with the drive parked as the board does first of all.
 class Bench {
  public:
-  Bench(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false)
-      : chip_(std::make_unique<FakeConverters>(fault, at_frame, is_dac_ahead)),
-        stream_(std::make_unique<G474Stream>()) {
-    stream_->park(170'000'000);
+  Bench(StreamFault fault, std::uint64_t at_frame, bool is_dac_ahead = false,
+        bool is_dma_ahead = false)
+      : chip_(std::make_unique<FakeConverters>(fault, at_frame, is_dac_ahead, is_dma_ahead)),
+        stream_(std::make_unique<Stm32Stream>(chip::kStream)) {
+    stream_->park(0);
     stream_->set_clock_exact(true);
     chip_->set_output_interrupt([stream = stream_.get()] { stream->on_output_interrupt(); });
   }
 
-  G474Stream& stream() { return *stream_; }
+  Stm32Stream& stream() { return *stream_; }
   FakeConverters& chip() { return *chip_; }
   DriveProbe drive() const { return chip_->drive(); }
   double now_s() const { return chip_->now_s(); }
 
  private:
   std::unique_ptr<FakeConverters> chip_;
-  std::unique_ptr<G474Stream> stream_;
+  std::unique_ptr<Stm32Stream> stream_;
 };
 
-TEST(G474Stream, KeepsTheContract) {
+TEST(Stm32Stream, KeepsTheContract) {
   for (const bool is_dac_ahead : {false, true}) {
-    const auto make = [is_dac_ahead](StreamFault fault, std::uint64_t at_frame) {
-      return Bench(fault, at_frame, is_dac_ahead);
-    };
-    EXPECT_EQ(names_of(violated_clauses(make)), "none") << is_dac_ahead;
+    for (const bool is_dma_ahead : {false, true}) {
+      const auto make = [=](StreamFault fault, std::uint64_t at_frame) {
+        return Bench(fault, at_frame, is_dac_ahead, is_dma_ahead);
+      };
+      EXPECT_EQ(names_of(violated_clauses(make)), "none") << is_dac_ahead << is_dma_ahead;
+    }
   }
 }
 
-TEST(G474Stream, StatesWhatTheBoardIs) {
-  const Bench bench(StreamFault::kNone, 0);
-  const hal::StreamFormat& format = board::kG474Format;
-  EXPECT_EQ(format.sample_rate_hz, 50000.0);
+TEST(Stm32Stream, StatesWhatTheBoardIs) {
+  Bench bench(StreamFault::kNone, 0);
+  const hal::StreamFormat& format = bench.stream().format();
+  EXPECT_EQ(format.sample_rate_hz, 1e6 / chip::kFrame_us);
   EXPECT_EQ(format.drive_full_scale_v, 1.65);
   EXPECT_EQ(format.input_full_scale_v, 1.65);
   EXPECT_EQ(format.block_frames, 64U);
@@ -112,7 +114,7 @@ class RunningStream : public testing::Test {
     return status;
   }
 
-  G474Stream& stream() { return bench.stream(); }
+  Stm32Stream& stream() { return bench.stream(); }
   FakeConverters& chip() { return bench.chip(); }
 
   Bench bench{StreamFault::kNone, 0};
@@ -136,7 +138,12 @@ TEST_F(RunningStream, TellsAnUnderrunOfTheDac) {
 
 TEST_F(RunningStream, TellsAnOverrunOfAnAdc) {
   chip().set_overrun();
-  EXPECT_EQ(fault(), Status::kLostBlock);
+  if (chip::kOverrunTells) {
+    EXPECT_EQ(fault(), Status::kLostBlock);
+  } else {
+    // Where results give way to the next ones, the frames are counted instead.
+    EXPECT_EQ(exchange().status, Status::kOk);
+  }
 }
 
 TEST_F(RunningStream, TellsALostCrystalAndRefusesToStartAgain) {
@@ -156,14 +163,14 @@ TEST_F(RunningStream, LeadsTheDriveToZeroWithoutTriggers) {
 
 TEST_F(RunningStream, TakesAPauseOfHalfARing) {
   // From the moment at which a block has come in: half a ring, less that block.
-  chip().spend_us((kRingFrames / 2 - kBlockFrames) * std::uint64_t{kFrame_us});
+  chip().spend_us((kRingFrames / 2 - kBlockFrames) * std::uint64_t{chip::kStream.frame_us});
   for (int block = 0; block < 8; ++block) {
     EXPECT_EQ(exchange().status, Status::kOk) << block;
   }
 }
 
 TEST_F(RunningStream, HoldsTheDriveInALongerPauseAndTellsIt) {
-  chip().spend_us(10 * kRingFrames * std::uint64_t{kFrame_us});
+  chip().spend_us(10 * kRingFrames * std::uint64_t{chip::kStream.frame_us});
   // No old values: the drive has not moved.
   EXPECT_EQ(bench.drive().last, kDrive);
   EXPECT_LE(bench.drive().max_step, static_cast<std::uint32_t>(kLimits.step_per_frame));
@@ -179,9 +186,9 @@ TEST_F(RunningStream, LeadsTheDriveToZeroWhateverRuns) {
 }
 
 /// What the board's README says of a wire from the drive to both inputs.
-TEST(G474Sweep, FindsTheReferenceItselfThroughAWire) {
+TEST(Stm32Sweep, FindsTheReferenceItselfThroughAWire) {
   Bench bench(StreamFault::kNone, 0);
-  bench.chip().set_access_cycles(170);
+  bench.chip().set_access_cycles(FakeConverters::kCyclesPer_us);
   bench.chip().set_noisy(true);
   app::SweepSettings settings = app::default_sweep_settings();
   settings.drive_limit_v = 1.4;
@@ -224,23 +231,57 @@ TEST(G474Sweep, FindsTheReferenceItselfThroughAWire) {
   }
 }
 
-TEST(G474StreamStart, EndsWhenTheCalibrationNeverDoes) {
+TEST(StreamStart, EndsWhenTheCalibrationNeverDoes) {
   Bench bench(StreamFault::kNone, 0);
   bench.chip().hold_calibration(true);
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
-  EXPECT_LT(bench.now_s(), 0.05);
+  EXPECT_LT(bench.now_s(), 1.1);
   bench.chip().hold_calibration(false);
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
 }
 
-TEST(G474StreamStart, EndsWhenNoTriggerEverComes) {
+TEST(StreamStart, EndsWhenNoTriggerEverComes) {
   Bench bench(StreamFault::kNone, 0);
   bench.chip().stop_triggers();
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
   EXPECT_LT(bench.now_s(), 0.05);
 }
 
-TEST(G474StreamStart, NeedsTheCrystal) {
+TEST(StreamStart, MeasuresAConversionWhereItsClockIsInDoubt) {
+  Bench bench(StreamFault::kNone, 0);
+  if (chip::kRegulatorReady == 0) {
+    ASSERT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
+    EXPECT_EQ(bench.stream().conversion_cycles(), 0U);
+    return;
+  }
+  // 4 us, or 8 should the chip halve its clock; a look at the flag takes some hundredths of one.
+  for (const std::uint64_t us : {4U, 8U}) {
+    bench.chip().set_conversion_us(us);
+    ASSERT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
+    EXPECT_NEAR(static_cast<double>(bench.stream().conversion_cycles()), 400.0 * double(us), 40.0);
+    bench.stream().stop();
+  }
+  // 16 us would be every second frame.
+  bench.chip().set_conversion_us(16);
+  EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
+  bench.chip().set_conversion_us(4);
+  bench.chip().hold_regulator(true);
+  EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
+}
+
+TEST(StreamStart, ChecksTheInputsWithoutAStream) {
+  Bench bench(StreamFault::kNone, 0);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kOk);
+  EXPECT_FALSE(bench.stream().running());
+  EXPECT_TRUE(bench.stream().drive_is_at_zero());
+  bench.chip().hold_calibration(true);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kHardwareFault);
+  bench.chip().hold_calibration(false);
+  EXPECT_EQ(bench.stream().check_inputs(), Status::kOk);
+  EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
+}
+
+TEST(StreamStart, NeedsTheCrystal) {
   Bench bench(StreamFault::kNone, 0);
   bench.stream().set_clock_exact(false);
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
