@@ -78,7 +78,7 @@ struct SweepFault {
   const char* told;  ///< What the error says.
 };
 
-void lose_a_block(Stm32g474& chip) { chip.requests.lose(kAdc1Request, 64); }
+void lose_a_block(Stm32g474& chip) { chip.requests.lose(chip.adc.dma_request(), 64); }
 void stop_the_converters(Stm32g474& chip) { chip.adc.set_dead(true); }
 void fail_the_response(Stm32g474& chip) { chip.dma1.fail_next(0), chip.dma2.fail_next(0); }
 void fail_the_drive(Stm32g474& chip) { chip.dma1.fail_next(1), chip.dma2.fail_next(1); }
@@ -260,7 +260,7 @@ class SerialLine {
   const std::string& name() const { return name_; }
 
   /// Hands over what both sides have sent.
-  void carry(Lpuart& console) const {
+  void carry(Uart& console) const {
     char bytes[256];
     const ssize_t count = read(board_, bytes, sizeof bytes);
     if (count > 0) {
@@ -438,7 +438,7 @@ TEST_F(Hang, WithoutInterruptsIsEndedByTheOtherWatchdog) {
   start_sweep();
   put_in("Watchdog4kick", {0xB672, 0xE7FE});  // cpsid i
   EXPECT_TRUE(is_reset(30.0));
-  EXPECT_EQ(board->chip.rcc.bus_read(0x94, 4) & kWatchdogReset, kWatchdogReset);
+  EXPECT_TRUE(board->chip.was_reset_by_watchdog());
   EXPECT_TRUE(answers(1.0));
   EXPECT_EQ(error(), -310);
   EXPECT_LE(driving_v(), kCode_v);
