@@ -23,10 +23,10 @@ std::uint8_t* Dma::reach(std::uint32_t register_offset, std::uint32_t address,
 }
 
 DmaAnswer Dma::request(unsigned channel, unsigned id, bool lost) {
-  if (chosen(channel) != id || !gate().on || !on(channel)) {
+  if (chosen(channel) != id || !gate().on) {
     return DmaAnswer::kNobody;
   }
-  if (left(channel) == 0) {
+  if (!on(channel) || left(channel) == 0) {
     ask_in_vain(channel);
     return DmaAnswer::kNobody;
   }

@@ -96,7 +96,7 @@ void DmaChannels::fail(unsigned channel) {
 }
 
 void DmaChannels::ask_in_vain(unsigned channel) {
-  if (channels_[channel].over) {
+  if (on(channel) && channels_[channel].over) {
     report("dma_not_circular", control(channel), stored(control(channel)));
   }
 }
