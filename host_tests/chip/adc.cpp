@@ -447,18 +447,26 @@ void AdcPair::finish(bool both) {
 }
 
 void AdcPair::hand_over(bool both) {
-  const bool pair_dma = both && common.dma_mode() != 0;
-  if (!pair_dma && !master.settings().dma) {
+  if (both && common.dma_mode() != 0) {
+    const bool goes_round =
+        family_.round_in_common ? common.dma_goes_round() : master.settings().dma_goes_round;
+    ask(master, family_.dma_request, goes_round);
     return;
   }
-  if (master.dma_over) {
-    context_.findings.report("adc_dma_one_shot", pair_dma ? "ADC12.CCR" : "ADC1.CFGR");
+  if (master.settings().dma) {
+    ask(master, family_.dma_request, master.settings().dma_goes_round);
+  }
+  if (both && slave.settings().dma) {
+    ask(slave, family_.slave_request, slave.settings().dma_goes_round);
+  }
+}
+
+void AdcPair::ask(Adc& adc, unsigned request, bool goes_round) {
+  if (adc.dma_over) {
+    context_.findings.report("adc_dma_one_shot", adc.name() + ".CFGR");
     return;
   }
-  const DmaAnswer answer = requests_.request(family_.dma_request);
-  const bool goes_round = pair_dma && family_.round_in_common ? common.dma_goes_round()
-                                                              : master.settings().dma_goes_round;
-  master.dma_over = answer == DmaAnswer::kLast && !goes_round;
+  adc.dma_over = requests_.request(request) == DmaAnswer::kLast && !goes_round;
 }
 
 }  // namespace emax::chip

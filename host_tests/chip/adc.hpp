@@ -43,7 +43,7 @@ class AdcFamily {
   virtual bool is_not_modelled(std::uint32_t offset, std::uint32_t value) const = 0;
 
   Registers converter, common;
-  unsigned dma_request = 0;
+  unsigned dma_request = 0, slave_request = 0;
   std::uint32_t difsel = 0, calfact = 0;
   std::uint32_t kept_control = 0x70000000;  ///< Bits of CR that stay as they are written.
   double regulator_start_s = 20e-6;
@@ -186,6 +186,7 @@ class AdcPair {
   bool may_slip() const;
   std::uint32_t source_hz() const;
   void hand_over(bool both);
+  void ask(Adc& adc, unsigned request, bool goes_round);
 
   Context context_;
   Clocks& clocks_;

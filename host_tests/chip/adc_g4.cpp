@@ -15,6 +15,7 @@ AdcFamilyG4::AdcFamilyG4() {
   converter = g474::adc_registers();
   common = g474::adc_common_registers();
   dma_request = 5;
+  slave_request = 36;
   difsel = 0xB0;
   calfact = 0xB4;
   first_result_is_wrong = true;

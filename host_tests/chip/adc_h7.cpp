@@ -14,6 +14,7 @@ AdcFamilyH7::AdcFamilyH7() {
   converter = h743::adc_registers();
   common = h743::adc_common_registers();
   dma_request = 9;
+  slave_request = 10;
   difsel = 0xC0;
   calfact = 0xC4;
   kept_control = 0x70010300;  // And BOOST, and the kind of calibration.

@@ -111,6 +111,20 @@ TEST_F(H743Stream, TheSlavesDataSlipWhenOldDataAreKept) {
   }
 }
 
+// The other way around the slip: each converter's own register by a stream of its own.
+TEST_F(H743Stream, TwoStreamsKeepThePairTogether) {
+  set("two_streams", 1);
+  set("keeps_new_data", 0);
+  start();
+  board.chip.run_for(0.025);
+  const std::uint32_t slave = board.chip.symbol("response_of_slave");
+  for (std::uint32_t i = 1; i <= kRing; ++i) {
+    EXPECT_NEAR(response(i), expected(i), 1.0) << i;
+    EXPECT_EQ(board.chip.ram_word(slave + 4 * (i % kRing)), response(i)) << i;
+  }
+  EXPECT_EQ(board.chip.findings.text(), "");
+}
+
 TEST_F(H743Stream, WithTheCacheOnBuffersMustNotBeCacheable) {
   set("cached", 1);
   start();

@@ -121,6 +121,8 @@ struct Stream {
   Word oversampling = 1 | 3 << 5 | (8 - 1) << 16;  ///< The mean of eight.
   Word adc_trigger = 1U << 31 | 13U << 5 | 1U << 10 | 3;
   Word keeps_new_data = 1U << 12;  ///< OVRMOD
+  Word adc2_dma = 0;               ///< The slave asks for DMA of its own.
+  Word adc_register = kAdc12 + 0x0C;
   Word boost = 3U << 8;
   Word calibration = 1U << 16;  ///< Linear, too.
   Word adc_request = 9, dac_request = 67;
@@ -169,7 +171,7 @@ inline bool adc_on(const Stream& stream) {
   adc_settings(kAdc1, stream.adc1_channel, stream.preselected1, stream);
   adc_settings(kAdc2, stream.adc2_channel, stream.preselected2, stream);
   reg(kAdc1 + 0x0C) = stream.adc_trigger | stream.keeps_new_data;
-  reg(kAdc2 + 0x0C) = 1U << 31 | stream.keeps_new_data;
+  reg(kAdc2 + 0x0C) = 1U << 31 | stream.keeps_new_data | stream.adc2_dma;
   return true;
 }
 
@@ -206,8 +208,8 @@ inline bool stream_on(const Stream& stream) {
   if (!adc_on(stream)) {
     return false;
   }
-  dma_on(0, stream.adc_request, stream.adc_dma, stream.adc_fifo, kAdc12 + 0x0C, stream.adc_buffer,
-         stream.frames);
+  dma_on(0, stream.adc_request, stream.adc_dma, stream.adc_fifo, stream.adc_register,
+         stream.adc_buffer, stream.frames);
   dma_on(1, stream.dac_request, stream.dac_dma, stream.dac_fifo, kDac + 0x0C, stream.dac_buffer,
          stream.frames);
   reg(kDac) = 1 | 5 << 2 | 1 << 1 | 1 << 12;

@@ -6,13 +6,17 @@ using namespace image;
 extern "C" {
 [[gnu::section(".dma")]] Word drive[kRing];
 [[gnu::section(".dma")]] Word response[kRing];
-/// What a test changes before the power comes: OVRMOD, both FIFOs, the sizes of the memory's items.
-extern const volatile Word keeps_new_data, fifo, adc_memory_size, dac_memory_size, cached;
+[[gnu::section(".dma")]] Word response_of_slave[kRing];
+/// What a test changes before the power comes: OVRMOD, both FIFOs, the sizes of the memory's items,
+/// the data cache, a stream for each converter.
+extern const volatile Word keeps_new_data, fifo, adc_memory_size, dac_memory_size, cached,
+    two_streams;
 [[gnu::used, gnu::section(".rodata.a")]] const volatile Word keeps_new_data = 1U << 12;
 [[gnu::used, gnu::section(".rodata.b")]] const volatile Word fifo = 0;
 [[gnu::used, gnu::section(".rodata.c")]] const volatile Word adc_memory_size = 2;
 [[gnu::used, gnu::section(".rodata.d")]] const volatile Word dac_memory_size = 2;
 [[gnu::used, gnu::section(".rodata.e")]] const volatile Word cached = 0;
+[[gnu::used, gnu::section(".rodata.f")]] const volatile Word two_streams = 0;
 volatile Word halves;
 volatile Word wholes;
 
@@ -60,6 +64,14 @@ int main() {
   stream.dac_dma = kRound | kPeripheralWords | dac_memory_size << 13 | 1U << 6;
   stream.adc_buffer = reinterpret_cast<Word>(response);
   stream.dac_buffer = reinterpret_cast<Word>(drive);
+  if (two_streams != 0) {
+    clock_on(kAhb1, 1);
+    stream.pair = 6;
+    stream.adc_register = kAdc1 + 0x40;
+    stream.adc2_dma = 3;
+    dma_on(2, 10, stream.adc_dma, 0, kAdc2 + 0x40, reinterpret_cast<Word>(response_of_slave),
+           kRing);
+  }
   interrupt_on(11);
   print(stream_on(stream) ? "streams\n" : "dead\n");
   interrupt_on(39);
