@@ -23,6 +23,7 @@ struct NucleoG474re {
   static constexpr const char* kPreset = "nucleo-g474re";
   static constexpr std::uint32_t kCpu_hz = 170'000'000;
   static constexpr unsigned kConsoleInterrupt = 91;
+  static constexpr unsigned kLeastMistakes = 25;  ///< Planted in its drivers.
   static constexpr double kLatencyFrames = 513.0;
   /// At 50 kS/s the images of a drive of 5 kHz begin at 45 kHz: a filter for 100 kS/s would let
   /// 1e-3 of it through to the reference.
@@ -51,6 +52,7 @@ struct NucleoH743zi2 {
   static constexpr const char* kPreset = "nucleo-h743zi2";
   static constexpr std::uint32_t kCpu_hz = 400'000'000;
   static constexpr unsigned kConsoleInterrupt = 39;
+  static constexpr unsigned kLeastMistakes = 15;
   static constexpr double kLatencyFrames = 513.0;
   static constexpr double kReconstruction_hz = 25000.0;  // At 100 kS/s.
   /// What takes long is polled for, and costs a test real time: sectors, and linear calibration.
