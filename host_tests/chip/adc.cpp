@@ -4,39 +4,32 @@
 #include <cmath>
 #include <utility>
 
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
 namespace {
 
 constexpr std::uint32_t kIsr = 0x00, kIer = 0x04, kCr = 0x08, kCfgr = 0x0C, kCfgr2 = 0x10;
-constexpr std::uint32_t kSmpr1 = 0x14, kSmpr2 = 0x18, kSqr1 = 0x30, kDr = 0x40, kDifsel = 0xB0;
-constexpr std::uint32_t kOfr1 = 0x60, kOfr4 = 0x6C, kCalfact = 0xB4;
+constexpr std::uint32_t kSmpr1 = 0x14, kSmpr2 = 0x18, kDr = 0x40;
 constexpr std::uint32_t kReady = 1, kEndOfConversion = 4, kEndOfSequence = 8, kOverrun = 16;
 constexpr std::uint32_t kEnable = 1, kDisable = 2, kStart = 4, kStop = 16;
-constexpr std::uint32_t kRegulator = 1U << 28, kPowerDown = 1U << 29, kDifferential = 1U << 30;
-constexpr std::uint32_t kCalibrate = 1U << 31;
-constexpr std::uint32_t kSupply = kRegulator | kPowerDown | kDifferential;
+constexpr std::uint32_t kRegulator = 1U << 28, kPowerDown = 1U << 29;
+constexpr std::uint32_t kCalibrate = 1U << 31, kLinear = 1U << 16;
+constexpr std::uint32_t kRegulatorReady = 1U << 12;
 constexpr unsigned kInterrupt = 18;  // Of ADC1 and ADC2.
 
-const Time kRegulatorStart = ticks(20e-6);
 const Time kStabilization = ticks(5e-6);
 const Time kStopTime = ticks(0.5e-6);
 const Time kRest = ticks(1e-3);
-constexpr std::uint32_t kCalibrationCycles = 116;
 constexpr std::uint32_t kPauseCycles = 4;
-constexpr std::uint32_t kMostAlone_hz = 60'000'000, kMostTogether_hz = 52'000'000;
-constexpr std::uint32_t kLeast_hz = 140'000;
 /// By how much a first result is wrong here, of full scale; the erratum states none.
 constexpr double kFirstResultError = 0.05;
 
 }  // namespace
 
 Adc::Adc(Context context, const std::string& name, AdcPair& pair, bool master)
-    : RegisterBlock(context, name, adc_registers()), pair_(pair), master_(master) {}
+    : RegisterBlock(context, name, pair.family().converter), pair_(pair), master_(master) {}
 
 void Adc::on_reset() {
-  calibrated_ = stable_ = false;
+  calibrated_ = linear_ = stable_ = false;
   dma_over = false;
   regulator_at_ = calibrated_at_ = last_end_ = 0;
   rested_ = true;
@@ -63,7 +56,7 @@ void Adc::refresh() {
 void Adc::on_write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case kIsr:
-      clear_bits(kIsr, value);
+      clear_bits(kIsr, value & ~kRegulatorReady);
       refresh();
       return;
     case kIer:
@@ -80,15 +73,11 @@ void Adc::on_write(std::uint32_t offset, std::uint32_t value) {
     report("adc_setting_while_started", offset, value);
     return;
   }
-  if (enabled() && offset == kDifsel) {
+  if (enabled() && offset == pair_.family().difsel) {
     report("adc_setting_while_enabled", offset, value);
     return;
   }
-  const bool offset_on = offset >= kOfr1 && offset <= kOfr4 && value >> 31 != 0;
-  const bool sequence = offset == kSqr1 && (value & 0xF) != 0;
-  const bool continuous = offset == kCfgr && (value & 0x03016000) != 0;
-  const bool by_trigger = offset == kCfgr2 && (value & 0x0E010602) != 0;
-  if (offset_on || sequence || continuous || by_trigger) {
+  if (pair_.family().is_not_modelled(offset, value)) {
     report("not_modelled", offset, value);
   }
   put(offset, masked(offset, value));
@@ -139,12 +128,20 @@ void Adc::write_supply(std::uint32_t value) {
   if ((value & kRegulator) != 0 && (value & kPowerDown) != 0) {
     report("adc_regulator_off", kCr, value);
   }
-  put(kCr, (old & ~kSupply) | (value & kSupply));
+  const std::uint32_t kept = pair_.family().kept_control;
+  put(kCr, (old & ~kept) | (value & kept));
   if ((value & kRegulator) != 0 && (old & kRegulator) == 0) {
     regulator_at_ = context_.events.now();
+    if (pair_.family().tells_regulator) {
+      context_.events.after(ticks(pair_.family().regulator_start_s),
+                            [this] { set_bits(kIsr, kRegulatorReady); });
+    }
   }
   if ((value & kPowerDown) != 0) {
-    calibrated_ = false;
+    calibrated_ = linear_ = false;
+  }
+  if ((value & kRegulator) == 0) {
+    clear_bits(kIsr, kRegulatorReady);
   }
 }
 
@@ -153,7 +150,7 @@ bool Adc::regulator_is_up(std::uint32_t value) {
     report("adc_regulator_off", kCr, value);
     return false;
   }
-  if (context_.events.now() < regulator_at_ + kRegulatorStart) {
+  if (context_.events.now() < regulator_at_ + ticks(pair_.family().regulator_start_s)) {
     report("adc_regulator_too_soon", kCr, value);
   }
   return true;
@@ -161,13 +158,11 @@ bool Adc::regulator_is_up(std::uint32_t value) {
 
 void Adc::check_clock() const {
   const std::uint32_t clock_hz = pair_.clock_hz();
-  const std::uint32_t most_hz = pair_.is_pair() ? kMostTogether_hz : kMostAlone_hz;
-  if (clock_hz == 0) {
-    report("adc_no_clock", kCr);
-  } else if (clock_hz > most_hz) {
-    report("adc_too_fast", kCr, clock_hz);
-  } else if (clock_hz < kLeast_hz) {
-    report("adc_too_slow", kCr, clock_hz);
+  const char* const fault =
+      clock_hz == 0 ? "adc_no_clock"
+                    : pair_.family().clock_fault(clock_hz, pair_.is_pair(), stored(kCr));
+  if (fault != nullptr) {
+    report(fault, kCr, clock_hz);
   }
 }
 
@@ -179,7 +174,7 @@ void Adc::calibrate() {
     report("adc_calibration_while_enabled", kCr);
     return;
   }
-  if (uses_dma() || (pair_.is_pair() && pair_.common.dma_mode() != 0)) {
+  if (settings().dma || (pair_.is_pair() && pair_.common.dma_mode() != 0)) {
     report("adc_calibration_with_dma", kCr);
   }
   check_clock();
@@ -188,10 +183,14 @@ void Adc::calibrate() {
   }
   set_bits(kCr, kCalibrate);
   calibrated_hz_ = pair_.clock_hz();
-  context_.events.after(cycles_of(kCalibrationCycles, calibrated_hz_), [this] {
+  const bool linear = pair_.family().linear_cycles != 0 && has(kCr, kLinear);
+  const std::uint32_t cycles =
+      linear ? pair_.family().linear_cycles : pair_.family().calibration_cycles;
+  context_.events.after(cycles_of(cycles, calibrated_hz_), [this, linear] {
     clear_bits(kCr, kCalibrate);
-    put(kCalfact, 0x40);
+    put(pair_.family().calfact, 0x40);
     calibrated_ = true;
+    linear_ = linear_ || linear;
     rested_ = true;
     calibrated_at_ = context_.events.now();
   });
@@ -203,6 +202,8 @@ void Adc::enable() {
   }
   if (!calibrated_) {
     report("adc_not_calibrated", kCr);
+  } else if (pair_.family().linear_cycles != 0 && !linear_) {
+    report("adc_not_linear", kCr);
   }
   if (calibrated_ &&
       context_.events.now() < calibrated_at_ + cycles_of(kPauseCycles, pair_.clock_hz())) {
@@ -253,23 +254,16 @@ bool Adc::waits_for_trigger(unsigned selection) const {
   return started() && field(settings, 10, 2) != 0 && field(settings, 5, 5) == selection;
 }
 
-std::uint32_t Adc::pair_settings() const {
+AdcSettings Adc::settings() const {
   const unsigned at = channel();
   const std::uint32_t sample =
       at < 10 ? field(stored(kSmpr1), 3 * at, 3) : field(stored(kSmpr2), 3 * (at - 10), 3);
-  return sample | (stored(kCfgr2) & 0x1FF) << 3 | field(stored(kCfgr), 3, 2) << 12 |
-         (stored(kSmpr1) >> 31) << 14 | (stored(kCfgr) >> 15 & 1) << 15;
+  return pair_.family().settings(stored(kCfgr), stored(kCfgr2), sample, stored(kSmpr1));
 }
 
 std::uint32_t Adc::half_cycles() const {
-  constexpr std::uint32_t kSample[] = {5, 13, 25, 49, 95, 185, 495, 1281};
-  constexpr std::uint32_t kConversion[] = {25, 21, 17, 13};
-  const std::uint32_t settings = pair_settings();
-  const std::uint32_t sample =
-      kSample[settings & 7] + ((settings & 7) == 0 ? settings >> 13 & 2 : 0);
-  const std::uint32_t once = sample + kConversion[settings >> 12 & 3];
-  const bool sums = (stored(kCfgr2) & 1) != 0;
-  return sums ? once * (2U << field(stored(kCfgr2), 2, 3)) : once;
+  const AdcSettings now = settings();
+  return (now.sample_half_cycles + now.conversion_half_cycles) * now.ratio;
 }
 
 void Adc::begin(double input_v) {
@@ -280,18 +274,16 @@ void Adc::begin(double input_v) {
 // The chip's own noise makes the sum finer than a single code: here the sum is that of a converter
 // of so many bits more, rounded down.
 std::uint32_t Adc::convert(double input_v) const {
-  const unsigned bits = 12 - 2 * field(stored(kCfgr), 3, 2);
-  const bool sums = (stored(kCfgr2) & 1) != 0;
-  const std::uint32_t ratio = sums ? 2U << field(stored(kCfgr2), 2, 3) : 1;
-  const unsigned shift = sums ? field(stored(kCfgr2), 5, 4) : 0;
-  const double full = static_cast<double>(1U << bits);
+  const AdcSettings now = settings();
+  const double full = std::ldexp(1.0, static_cast<int>(now.bits));
   const double code = std::clamp(input_v / AdcPair::kReference_v * full, 0.0, full - 1.0);
-  const auto sum = static_cast<std::uint32_t>(std::floor(code * ratio)) >> shift;
-  if ((((1U << bits) - 1) * ratio >> shift) > 0xFFFF) {
+  const auto sum = static_cast<std::uint32_t>(std::floor(code * now.ratio)) >> now.right;
+  const std::uint32_t greatest = (((1U << now.bits) - 1) * now.ratio >> now.right) << now.left;
+  const bool is_narrow = !pair_.family().wide || pair_.is_pair();
+  if (is_narrow && greatest > 0xFFFF && now.ratio > 1) {
     report("adc_oversampling_overflow", kCfgr2, stored(kCfgr2));
   }
-  const bool left = (stored(kCfgr) >> 15 & 1) != 0;
-  return (left && !sums ? sum << (16 - bits) : sum) & 0xFFFF;
+  return is_narrow ? sum << now.left & 0xFFFF : sum << now.left;
 }
 
 void Adc::finish() {
@@ -300,7 +292,12 @@ void Adc::finish() {
   rested_ = false;
   last_end_ = now;
   const double error_v = wrong ? kFirstResultError * AdcPair::kReference_v : 0.0;
-  const std::uint32_t data = convert(input_v_ + error_v);
+  std::uint32_t data = convert(input_v_ + error_v);
+  if (!master_ && pair_.slave_has_slipped()) {
+    std::swap(data, last_data_);
+  } else {
+    last_data_ = data;
+  }
   const bool unread = (stored(kIsr) & kEndOfConversion) != 0;
   if (unread) {
     report("adc_overrun", kDr);
@@ -313,8 +310,13 @@ void Adc::finish() {
   refresh();
 }
 
+bool AdcPair::may_slip() const {
+  return family_.slave_slips && common.dma_mode() != 0 &&
+         (master.keeps_old_data() || slave.keeps_old_data());
+}
+
 AdcCommon::AdcCommon(Context context, AdcPair& pair)
-    : RegisterBlock(context, "ADC12", adc_common_registers()), pair_(pair) {}
+    : RegisterBlock(context, "ADC12", pair.family().common), pair_(pair) {}
 
 std::uint32_t AdcCommon::on_read(std::uint32_t offset, std::uint32_t value) {
   if (offset == 0x00) {
@@ -322,7 +324,7 @@ std::uint32_t AdcCommon::on_read(std::uint32_t offset, std::uint32_t value) {
   }
   if (offset == 0x0C) {
     const std::uint32_t low = pair_.master.take_data();
-    return low | pair_.slave.take_data() << 16;
+    return (low & 0xFFFF) | pair_.slave.take_data() << 16;
   }
   return value;
 }
@@ -339,15 +341,19 @@ void AdcCommon::on_write(std::uint32_t offset, std::uint32_t value) {
   put(offset, masked(offset, value));
 }
 
-AdcPair::AdcPair(Context context, Clocks& clocks, DmaRequests& requests)
-    : master(context, "ADC1", *this, true),
+AdcPair::AdcPair(Context context, Clocks& clocks, DmaRequests& requests, AdcFamily& family)
+    : family_(family),
+      master(context, "ADC1", *this, true),
       slave(context, "ADC2", *this, false),
       common(context, *this),
+      first_result_is_wrong(family.first_result_is_wrong),
       context_(context),
       clocks_(clocks),
       requests_(requests) {}
 
-std::uint32_t AdcPair::clock_hz() const {
+std::uint32_t AdcPair::clock_hz() const { return source_hz() / family_.clock_divider; }
+
+std::uint32_t AdcPair::source_hz() const {
   constexpr std::uint32_t kDividers[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256};
   switch (common.clock_mode()) {
     case 0:
@@ -371,8 +377,12 @@ void AdcPair::check_settings(bool both) {
   if (master.channel() == slave.channel()) {
     context_.findings.report("adc_same_channel", "ADC2.SQR1", slave.channel());
   }
-  if (master.pair_settings() != slave.pair_settings()) {
-    context_.findings.report("adc_pair_differs", "ADC2.SMPR1", slave.pair_settings());
+  if (!master.settings().is_like(slave.settings())) {
+    context_.findings.report("adc_pair_differs", "ADC2.SMPR1");
+  }
+  frames_ = 0;
+  if (may_slip()) {
+    context_.findings.report("adc_slave_may_slip", "ADC1.CFGR");
   }
 }
 
@@ -395,7 +405,11 @@ double AdcPair::input_v(const Adc& adc) {
     return 0.0;
   }
   if (!analog_(channel)) {
-    context_.findings.report("adc_pin_not_analog", "GPIOA.MODER", channel);
+    context_.findings.report("adc_pin_not_analog", "GPIO.MODER", channel);
+    return 0.0;
+  }
+  if (family_.preselects && !adc.preselects(channel)) {
+    context_.findings.report("adc_channel_not_preselected", adc.name() + ".PCSEL", channel);
     return 0.0;
   }
   return volts;
@@ -422,6 +436,7 @@ void AdcPair::convert(bool both) {
 void AdcPair::finish(bool both) {
   ++conversions_;
   master.finish();
+  frames_ += both && may_slip() ? 1U : 0U;
   if (both) {
     slave.finish();
   }
@@ -432,17 +447,26 @@ void AdcPair::finish(bool both) {
 }
 
 void AdcPair::hand_over(bool both) {
-  const bool pair_dma = both && common.dma_mode() != 0;
-  if (!pair_dma && !master.uses_dma()) {
+  if (both && common.dma_mode() != 0) {
+    const bool goes_round =
+        family_.round_in_common ? common.dma_goes_round() : master.settings().dma_goes_round;
+    ask(master, family_.dma_request, goes_round);
     return;
   }
-  if (master.dma_over) {
-    context_.findings.report("adc_dma_one_shot", pair_dma ? "ADC12.CCR" : "ADC1.CFGR");
+  if (master.settings().dma) {
+    ask(master, family_.dma_request, master.settings().dma_goes_round);
+  }
+  if (both && slave.settings().dma) {
+    ask(slave, family_.slave_request, slave.settings().dma_goes_round);
+  }
+}
+
+void AdcPair::ask(Adc& adc, unsigned request, bool goes_round) {
+  if (adc.dma_over) {
+    context_.findings.report("adc_dma_one_shot", adc.name() + ".CFGR");
     return;
   }
-  const DmaAnswer answer = requests_.request(kAdc1Request);
-  const bool goes_round = pair_dma ? common.dma_goes_round() : master.dma_goes_round();
-  master.dma_over = answer == DmaAnswer::kLast && !goes_round;
+  adc.dma_over = requests_.request(request) == DmaAnswer::kLast && !goes_round;
 }
 
 }  // namespace emax::chip

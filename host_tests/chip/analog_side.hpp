@@ -9,7 +9,7 @@
 #include "emax/sim/volt_bench.hpp"
 
 #include "chip/events.hpp"
-#include "chip/stm32g474.hpp"
+#include "chip/stm32.hpp"
 
 namespace emax::chip {
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "chip/events.hpp"
@@ -10,40 +11,59 @@
 
 namespace emax::chip {
 
-inline constexpr std::uint32_t kHsi_hz = 16'000'000;
-inline constexpr std::uint32_t kHse_hz = 24'000'000;  ///< The board's crystal.
 inline constexpr std::uint32_t kLsi_hz = 32'000;
 
-/// Time of some cycles of a clock.
+/// Time of some cycles of a clock, rounded down.
 constexpr Time cycles_of(std::uint64_t cycles, std::uint32_t clock_hz) {
-  return clock_hz == 0 ? kNever / 2 : cycles * kTicksPerSecond / clock_hz;
+  return clock_hz == 0 ? kNever / 2
+                       : cycles * (kTicksPerSecond / clock_hz) +
+                             cycles * (kTicksPerSecond % clock_hz) / clock_hz;
 }
 
-/// Found here: "too_few_wait_states", "too_fast_for_voltage".
+/// Of one chip or the other; what is found at a speed depends on the chip.
 class Clocks {
  public:
-  explicit Clocks(Findings& findings) : findings_(findings) {}
+  /// What supply and flash allow at the clocks as they are.
+  using Rule = std::function<void(const Clocks&, Findings&)>;
 
-  std::uint32_t sysclk_hz = kHsi_hz;
-  std::uint32_t hclk_hz = kHsi_hz;
-  std::uint32_t pclk1_hz = kHsi_hz;
-  std::uint32_t pclk2_hz = kHsi_hz;
-  std::uint32_t timer1_hz = kHsi_hz;  ///< Of the timers at APB1.
-  std::uint32_t pll_p_hz = 0;         ///< Zero: off.
-  std::uint32_t lpuart_hz = kHsi_hz;
+  Clocks(Findings& findings, std::uint32_t start_hz, Rule rule)
+      : cpu_hz(start_hz),
+        sysclk_hz(start_hz),
+        hclk_hz(start_hz),
+        pclk1_hz(start_hz),
+        pclk2_hz(start_hz),
+        timer1_hz(start_hz),
+        uart_hz(start_hz),
+        findings_(findings),
+        rule_(std::move(rule)) {}
+
+  std::uint32_t cpu_hz;
+  std::uint32_t sysclk_hz;
+  std::uint32_t hclk_hz;  ///< Of buses and memories; the processor may be faster.
+  std::uint32_t pclk1_hz;
+  std::uint32_t pclk2_hz;
+  std::uint32_t timer1_hz;         ///< Of the timers at APB1.
+  std::uint32_t uart_hz;           ///< Of the console.
   std::uint32_t adc_async_hz = 0;  ///< What RCC hands to ADC1 and ADC2; zero: nothing.
-  unsigned voltage_range = 1;
+  unsigned voltage_range = 1;      ///< The chip's own number for it.
   bool boost = false;
   unsigned wait_states = 0;
+  unsigned write_delay = 0;  ///< WRHIGHFREQ, where there is one.
 
   /// Everybody who counts time hears of a change.
   void on_change(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }
-  void changed();
-  /// Looks whether flash and supply are fast enough for HCLK.
-  void check_speed();
+  void changed() {
+    check_speed();
+    for (const auto& listener : listeners_) {
+      listener();
+    }
+  }
+  /// Looks whether flash and supply are fast enough.
+  void check_speed() { rule_(*this, findings_); }
 
  private:
   Findings& findings_;
+  Rule rule_;
   std::vector<std::function<void()>> listeners_;
 };
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
 namespace {
 
@@ -23,12 +21,6 @@ constexpr double kBufferMargin_v = 0.2;
 const Time kWakeUp = ticks(8e-6);
 
 }  // namespace
-
-Dac::Dac(Context context, Clocks& clocks, DmaRequests& requests, const Gpio& port)
-    : RegisterBlock(context, "DAC1", dac_registers()),
-      clocks_(clocks),
-      requests_(requests),
-      port_(port) {}
 
 void Dac::on_reset() {
   holding_ = 0;
@@ -100,14 +92,14 @@ void Dac::write_control(std::uint32_t value) {
     const unsigned wanted = clocks_.hclk_hz > 160'000'000  ? 2
                             : clocks_.hclk_hz > 80'000'000 ? 1
                                                            : 0;
-    if (field(stored(kMcr), 14, 2) != wanted) {
+    if (kind_.has_speed && field(stored(kMcr), 14, 2) != wanted) {
       report("dac_hfsel", kMcr, stored(kMcr));
     }
     if (uses_trigger() && stored(kDor1) != holding_) {
       report("dac_output_before_first_trigger", kCr, value);
     }
     context_.events.after(kWakeUp, [this] {
-      if (enabled()) {
+      if (enabled() && kind_.tells_ready) {
         set_bits(kSr, kOutputReady);
       }
     });
@@ -152,7 +144,7 @@ void Dac::request() {
     refresh();
     return;
   }
-  request_waits_ = requests_.request(kDac1Request) == DmaAnswer::kNobody;
+  request_waits_ = requests_.request(kind_.request) == DmaAnswer::kNobody;
 }
 
 void Dac::refresh() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "chip/clocks.hpp"
 #include "chip/dma.hpp"
@@ -16,7 +17,20 @@ class Dac final : public RegisterBlock {
  public:
   static constexpr double kReference_v = 3.3;
 
-  Dac(Context context, Clocks& clocks, DmaRequests& requests, const Gpio& port);
+  /// What differs between chips.
+  struct Kind {
+    unsigned request;
+    bool has_speed;    ///< MCR.HFSEL must fit the bus clock.
+    bool tells_ready;  ///< SR.DAC1RDY
+  };
+
+  Dac(Context context, Clocks& clocks, DmaRequests& requests, const Gpio& port, const Kind& kind,
+      Registers registers)
+      : RegisterBlock(context, "DAC1", std::move(registers)),
+        kind_(kind),
+        clocks_(clocks),
+        requests_(requests),
+        port_(port) {}
 
   /// Hears of each change of the pin; not a number when the output is off.
   void on_output(std::function<void(double pin_v)> action) { output_ = std::move(action); }
@@ -36,6 +50,7 @@ class Dac final : public RegisterBlock {
   void refresh();
   bool uses_trigger() const { return has(0x00, 2); }
 
+  Kind kind_;
   Clocks& clocks_;
   DmaRequests& requests_;
   const Gpio& port_;

@@ -1,25 +1,6 @@
 #include "chip/dma.hpp"
 
-#include <cstring>
-
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
-namespace {
-
-constexpr std::uint32_t kIsr = 0x00, kIfcr = 0x04, kFirstControl = 0x08;
-constexpr std::uint32_t kEnable = 1, kFromMemory = 1U << 4, kCircular = 1U << 5;
-constexpr std::uint32_t kPeripheralSteps = 1U << 6, kMemorySteps = 1U << 7;
-constexpr std::uint32_t kMemoryToMemory = 1U << 14;
-constexpr std::uint32_t kInterruptEnables = 0xE;
-constexpr std::uint32_t kAny = 1, kWhole = 2, kHalf = 4, kError = 8;
-
-unsigned peripheral_bytes(std::uint32_t control) { return 1U << field(control, 8, 2); }
-unsigned memory_bytes(std::uint32_t control) { return 1U << field(control, 10, 2); }
-
-}  // namespace
-
-Dmamux::Dmamux(Context context) : RegisterBlock(context, "DMAMUX", dmamux_registers()) {}
 
 void Dmamux::on_write(std::uint32_t offset, std::uint32_t value) {
   if (offset < 0x40 && channel_on_(offset / 4) && value != stored(offset)) {
@@ -31,154 +12,33 @@ void Dmamux::on_write(std::uint32_t offset, std::uint32_t value) {
   put(offset, masked(offset, value));
 }
 
-Dma::Dma(Context context, const std::string& name, DmaBus& bus, Dmamux& mux, unsigned first_mux,
-         const std::array<unsigned, kChannels>& interrupts)
-    : RegisterBlock(context, name, dma_registers()),
-      bus_(bus),
-      mux_(mux),
-      first_mux_(first_mux),
-      interrupts_(interrupts) {}
-
-void Dma::on_reset() {
-  channels_ = {};
-  for (unsigned channel = 0; channel < kChannels; ++channel) {
-    refresh(channel);
+std::uint8_t* Dma::reach(std::uint32_t register_offset, std::uint32_t address,
+                         std::uint32_t bytes) const {
+  std::uint8_t* const begin = bus_.dma_memory(address, bytes);
+  const char* const objection = bus_.dma_objection(address, bytes);
+  if (begin == nullptr || objection != nullptr) {
+    report(objection != nullptr ? objection : "dma_unreachable", register_offset, address);
   }
-}
-
-void Dma::on_write(std::uint32_t offset, std::uint32_t value) {
-  if (offset == kIfcr) {
-    for (unsigned channel = 0; channel < kChannels; ++channel) {
-      std::uint32_t flags = value >> (4 * channel) & 0xF;
-      flags |= (flags & kAny) != 0 ? 0xFU : 0U;
-      clear_bits(kIsr, flags << (4 * channel));
-      refresh(channel);
-    }
-    return;
-  }
-  const unsigned channel = (offset - kFirstControl) / 20;
-  const bool is_control = offset == control(channel);
-  const std::uint32_t free = is_control ? kEnable | kInterruptEnables : 0;
-  if (on(channel) && (value & kEnable || !is_control) && ((stored(offset) ^ value) & ~free) != 0) {
-    report("dma_setting_while_enabled", offset, value);
-    value = (stored(offset) & ~free) | (value & free);
-  }
-  const bool was_on = on(channel);
-  put(offset, masked(offset, value));
-  if (is_control && !was_on && on(channel)) {
-    enable(channel);
-  }
-  refresh(channel);
-}
-
-bool Dma::usable(unsigned channel) const {
-  const std::uint32_t settings = stored(control(channel));
-  const std::uint32_t items = stored(count(channel));
-  const std::uint32_t target = stored(memory(channel));
-  const std::uint32_t source = stored(peripheral(channel));
-  if (target % memory_bytes(settings) != 0 || source % peripheral_bytes(settings) != 0) {
-    report("dma_misaligned", memory(channel), target);
-  }
-  const std::uint32_t steps = (settings & kMemorySteps) != 0 ? items : 1;
-  std::uint8_t* const begin = bus_.dma_memory(target, steps * memory_bytes(settings));
-  if (begin == nullptr || !bus_.is_register(source)) {
-    report("dma_unreachable", begin == nullptr ? memory(channel) : peripheral(channel),
-           begin == nullptr ? target : source);
-    return false;
-  }
-  return true;
-}
-
-void Dma::enable(unsigned channel) {
-  channels_[channel].over = false;
-  channels_[channel].total = stored(count(channel));
-  const std::uint32_t settings = stored(control(channel));
-  if ((settings & (kMemoryToMemory | kPeripheralSteps)) != 0) {
-    report("not_modelled", control(channel), settings);
-  }
-  if (stored(count(channel)) == 0) {
-    report("dma_nothing_to_transfer", count(channel));
-    return;
-  }
-  if (mux_.request_of(first_mux_ + channel) == 0) {
-    report("dma_no_request_chosen", control(channel), settings);
-  }
-  if (!usable(channel)) {
-    fail(channel);
-  }
-}
-
-void Dma::fail(unsigned channel) {
-  clear_bits(control(channel), kEnable);
-  set_flags(channel, kError);
+  return begin;
 }
 
 DmaAnswer Dma::request(unsigned channel, unsigned id, bool lost) {
-  if (mux_.request_of(first_mux_ + channel) != id || !gate().on || !on(channel)) {
+  if (chosen(channel) != id || !gate().on) {
     return DmaAnswer::kNobody;
   }
-  if (stored(count(channel)) == 0) {
-    if (channels_[channel].over) {
-      report("dma_not_circular", control(channel), stored(control(channel)));
-    }
+  if (!on(channel) || left(channel) == 0) {
+    ask_in_vain(channel);
     return DmaAnswer::kNobody;
   }
-  if (fail_[channel]) {
-    fail_[channel] = false;
+  if (std::exchange(fail_[channel], false)) {
     fail(channel);
     return DmaAnswer::kNobody;
   }
   if (lost) {
-    const std::uint32_t settings = stored(control(channel));
-    if ((settings & kFromMemory) == 0) {
-      bus_.read(stored(peripheral(channel)), peripheral_bytes(settings));
-    }
+    lose(channel);
     return DmaAnswer::kDone;
   }
-  transfer(channel);
-  const std::uint32_t left = stored(count(channel)) - 1;
-  put(count(channel), left);
-  if (left == channels_[channel].total / 2) {
-    set_flags(channel, kHalf);
-  }
-  if (left != 0) {
-    return DmaAnswer::kDone;
-  }
-  const bool circular = (stored(control(channel)) & kCircular) != 0;
-  channels_[channel].over = !circular;
-  if (circular) {
-    put(count(channel), channels_[channel].total);
-  }
-  set_flags(channel, kWhole);
-  return DmaAnswer::kLast;
-}
-
-void Dma::transfer(unsigned channel) {
-  const std::uint32_t settings = stored(control(channel));
-  const std::uint32_t done = channels_[channel].total - stored(count(channel));
-  const unsigned bytes = memory_bytes(settings);
-  const std::uint32_t step = (settings & kMemorySteps) != 0 ? done * bytes : 0;
-  std::uint8_t* const at = bus_.dma_memory(stored(memory(channel)) + step, bytes);
-  const std::uint32_t target = stored(peripheral(channel));
-  std::uint32_t value = 0;
-  if ((settings & kFromMemory) != 0) {
-    std::memcpy(&value, at, bytes);
-    bus_.write(target, peripheral_bytes(settings), value);
-    return;
-  }
-  value = bus_.read(target, peripheral_bytes(settings));
-  std::memcpy(at, &value, bytes);
-}
-
-void Dma::set_flags(unsigned channel, std::uint32_t flags) {
-  set_bits(kIsr, (flags | kAny) << (4 * channel));
-  refresh(channel);
-}
-
-void Dma::refresh(unsigned channel) {
-  const std::uint32_t flags = get(kIsr) >> (4 * channel) & kInterruptEnables;
-  const bool high = (flags & get(control(channel)) & kInterruptEnables) != 0;
-  context_.wires.set(interrupt(interrupts_[channel]), this, high);
+  return serve(channel);
 }
 
 DmaAnswer DmaRequests::request(unsigned id) {

@@ -40,7 +40,8 @@ Engine::Engine(Core core, EngineClient& client) : client_(client) {
 void Engine::map_memory(std::uint32_t address, std::size_t bytes, std::uint32_t permissions,
                         std::uint8_t* memory) {
   check(uc_mem_map_ptr(engine_.get(), address, bytes, permissions, memory), "uc_mem_map_ptr");
-  memories_.push_back({address, memory, std::vector<std::uint32_t>(bytes / kGranule, permissions)});
+  memories_.push_back({address, memory, std::vector<std::uint32_t>(bytes / kGranule, permissions),
+                       permissions, false});
 }
 
 void Engine::map_registers(std::uint32_t address, std::size_t bytes) {
@@ -54,7 +55,7 @@ void Engine::map_registers(std::uint32_t address, std::size_t bytes) {
 bool Engine::protect(std::uint32_t address, std::uint32_t permissions) {
   for (Memory& memory : memories_) {
     const std::size_t granule = (address - memory.address) / kGranule;
-    if (address < memory.address || granule >= memory.permissions.size()) {
+    if (address < memory.address || granule >= memory.permissions.size() || memory.hidden) {
       continue;
     }
     std::uint32_t& old = memory.permissions[granule];
@@ -74,6 +75,38 @@ bool Engine::protect(std::uint32_t address, std::uint32_t permissions) {
     return true;
   }
   return false;
+}
+
+void Engine::protect_all(
+    const std::function<std::uint32_t(std::uint32_t, std::uint32_t)>& permissions) {
+  for (const Memory& memory : memories_) {
+    for (std::size_t i = 0; i < memory.permissions.size(); ++i) {
+      const auto at = memory.address + static_cast<std::uint32_t>(i) * kGranule;
+      protect(at, permissions(at, memory.otherwise));
+    }
+  }
+}
+
+void Engine::hide(std::uint32_t address, bool hidden) {
+  for (Memory& memory : memories_) {
+    const std::size_t bytes = memory.permissions.size() * kGranule;
+    if (memory.address != address || memory.hidden == hidden) {
+      continue;
+    }
+    for (std::uint32_t at = address; hidden && at < address + bytes; at += kGranule) {
+      protect(at, memory.otherwise);
+    }
+    memory.hidden = hidden;
+    check(uc_mem_unmap(engine_.get(), address, bytes), "uc_mem_unmap");
+    if (hidden) {
+      map_registers(address, bytes);
+    } else {
+      check(uc_mem_map_ptr(engine_.get(), address, bytes, memory.otherwise, memory.bytes),
+            "uc_mem_map_ptr");
+    }
+    // The protection unit's permissions are asked for anew.
+    memory.permissions.assign(memory.permissions.size(), memory.otherwise);
+  }
 }
 
 void Engine::forget_code() {

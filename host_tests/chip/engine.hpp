@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <unicorn/unicorn.h>
 #include <vector>
@@ -53,6 +54,12 @@ class Engine {
   /// @returns False where no memory is.
   bool protect(std::uint32_t address, std::uint32_t permissions);
 
+  /// The same for all memories; @p permissions tells from an address and what its memory permits.
+  void protect_all(const std::function<std::uint32_t(std::uint32_t, std::uint32_t)>& permissions);
+  /// Takes a memory away, so that accesses go to the client, or gives it back. Not while the engine
+  /// runs.
+  void hide(std::uint32_t address, bool hidden);
+
   /// Reads all code anew, after somebody has changed it from outside. Not while the engine runs.
   void forget_code();
 
@@ -81,6 +88,8 @@ class Engine {
     std::uint32_t address;
     std::uint8_t* bytes;
     std::vector<std::uint32_t> permissions;  ///< Of each granule.
+    std::uint32_t otherwise;                 ///< Without the protection unit.
+    bool hidden;
   };
   /// One range of registers; the emulator tells offsets only.
   struct Range {

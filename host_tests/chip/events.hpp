@@ -12,8 +12,9 @@ namespace emax::chip {
 /// Time since power was first on, in ticks.
 using Time = std::uint64_t;
 
-/// The cycles of 170, 160, 150, 144, 85, 80, 24 and 16 MHz and of 32 kHz are whole ticks.
-inline constexpr Time kTicksPerSecond = 122'400'000'000U;
+/// The cycles of 480, 400, 200, 170, 160, 150, 144, 100, 85, 80, 64, 24, 16 and 8 MHz and of 32 kHz
+/// are whole ticks.
+inline constexpr Time kTicksPerSecond = 244'800'000'000U;
 inline constexpr Time kNever = std::numeric_limits<Time>::max();
 
 constexpr double seconds(Time ticks) {

@@ -1,31 +1,12 @@
 #include "chip/gpio.hpp"
 
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
 namespace {
 
-constexpr std::uint32_t kModer = 0x00, kPupdr = 0x0C, kIdr = 0x10, kOdr = 0x14, kBsrr = 0x18;
-constexpr std::uint32_t kBrr = 0x28;
-
-// After reset all pins are analog, but those of the debug probe.
-Registers registers_of(char letter) {
-  Registers rows = gpio_registers();
-  for (Register& row : rows) {
-    if (letter != 'A' && row.offset == kModer) {
-      row.reset = letter == 'B' ? 0xFFFFFEBF : 0xFFFFFFFF;
-    }
-    if (letter != 'A' && (row.offset == kPupdr || row.offset == 0x08)) {
-      row.reset = letter == 'B' && row.offset == kPupdr ? 0x00000100 : 0;
-    }
-  }
-  return rows;
-}
+constexpr std::uint32_t kIdr = 0x10, kOdr = 0x14, kBsrr = 0x18;
+constexpr std::uint32_t kBrr = 0x28;  // Not in every chip.
 
 }  // namespace
-
-Gpio::Gpio(Context context, char letter)
-    : RegisterBlock(context, std::string("GPIO") + letter, registers_of(letter)) {}
 
 void Gpio::set_input(unsigned pin, bool high) {
   inputs_ = (inputs_ & ~(1U << pin)) | std::uint32_t{high} << pin;

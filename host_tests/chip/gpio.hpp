@@ -1,6 +1,9 @@
 // One port of pins.
 #pragma once
 
+#include <string>
+#include <utility>
+
 #include "chip/register_block.hpp"
 
 namespace emax::chip {
@@ -9,8 +12,8 @@ enum class PinMode { kInput, kOutput, kAlternate, kAnalog };
 
 class Gpio final : public RegisterBlock {
  public:
-  /// @param[in] letter Of the port, 'A' to 'G'; ports A and B have pins of the debug probe.
-  Gpio(Context context, char letter);
+  Gpio(Context context, char letter, Registers registers)
+      : RegisterBlock(context, std::string("GPIO") + letter, std::move(registers)) {}
 
   PinMode mode(unsigned pin) const { return static_cast<PinMode>(field(get(0x00), 2 * pin, 2)); }
   unsigned alternate(unsigned pin) const {

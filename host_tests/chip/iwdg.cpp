@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
 namespace {
 
@@ -13,9 +11,6 @@ constexpr double kUpdateCycles = 6.0;  // Of the slow clock.
 unsigned update_of(std::uint32_t offset) { return offset == kPr ? 0 : offset == kRlr ? 1 : 2; }
 
 }  // namespace
-
-Iwdg::Iwdg(Context context, Rcc& rcc)
-    : RegisterBlock(context, "IWDG", iwdg_registers()), rcc_(rcc) {}
 
 void Iwdg::on_reset() {
   context_.events.cancel(std::exchange(event_, 0));

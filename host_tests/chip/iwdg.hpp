@@ -11,7 +11,8 @@ namespace emax::chip {
 /// Found here: "watchdog_wrong_key", "watchdog_locked", "watchdog_updating".
 class Iwdg final : public RegisterBlock {
  public:
-  Iwdg(Context context, Rcc& rcc);
+  Iwdg(Context context, Rcc& rcc, Registers registers)
+      : RegisterBlock(context, "IWDG", std::move(registers)), rcc_(rcc) {}
 
   void on_bite(std::function<void()> action) { bite_ = std::move(action); }
   bool runs() const { return runs_; }

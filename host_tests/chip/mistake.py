@@ -17,7 +17,6 @@ import sys
 from typing import NamedTuple
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-PRODUCT = "emax_nucleo_g474re.elf"
 
 
 class Change(NamedTuple):
@@ -77,8 +76,9 @@ def compile_command(tree: str, source: str, copy: str, built: str) -> list[str]:
 
 
 def link_command(tree: str, built: str, image: str) -> list[str]:
-    """That of the image, with this file in front of the library which has the one without the mistake."""
-    listed = subprocess.run(["ninja", "-t", "commands", PRODUCT], cwd=tree, capture_output=True, text=True, check=True)
+    """That of the image of the tree build/<board>, with this file in front of the library which has the one without the mistake."""
+    product = f"emax_{os.path.basename(tree).replace('-', '_')}.elf"
+    listed = subprocess.run(["ninja", "-t", "commands", product], cwd=tree, capture_output=True, text=True, check=True)
     link = listed.stdout.splitlines()[-1].split(" && ")[1]
     words = [word for word in shlex.split(link) if "-Map=" not in word and "--emit-relocs" not in word]
     words[words.index("-o") + 1] = image

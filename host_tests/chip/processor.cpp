@@ -7,7 +7,7 @@
 namespace emax::chip {
 namespace {
 
-constexpr std::uint32_t kFlash = 0x08000000, kFlashBytes = 0x40000;
+constexpr std::uint32_t kFlash = 0x08000000;
 constexpr std::uint32_t kRam = 0x20000000, kRamBytes = 0x20000;
 
 constexpr std::uint32_t kFloatingPointActive = 4;  // CONTROL.FPCA
@@ -28,13 +28,15 @@ bool is_long(std::uint32_t halfword) { return (halfword >> 11) >= 0x1D; }
 
 }  // namespace
 
-Processor::Processor(Core core, Bus& bus, Events& events, Findings& findings)
-    : bus_(bus),
+Processor::Processor(Core core, std::uint32_t flash_bytes, Bus& bus, Events& events,
+                     Findings& findings)
+    : flash_bytes_(flash_bytes),
+      bus_(bus),
       events_(events),
       findings_(findings),
       engine_(core, *this),
-      system_(events, findings, nvic_),
-      counts_(kFlashBytes / 2) {
+      system_(core, events, findings, nvic_),
+      counts_(flash_bytes / 2) {
   findings.locate_with(&events, [this] { return block_; });
   system_.set_clock([this] { return cycle_; }, [this] { return cycles_; });
 }
@@ -53,7 +55,7 @@ void Processor::reset(std::uint32_t vectors) {
   engine_.set(UC_ARM_REG_LR, 0xFFFFFFFF);
   engine_.set(UC_ARM_REG_SP, load(vectors));
   pc_ = load(vectors + 4) & ~1U;
-  halt_ = asleep_ = event_ = locked_up_ = broke_ = false;
+  halt_ = asleep_ = event_ = locked_up_ = broke_ = access_failed_ = false;
   last_left_ = again_ = 0;
 }
 
@@ -81,7 +83,14 @@ Halt Processor::run(Time until) {
       continue;
     }
     if (system_.mpu_changed()) {
-      system_.apply_mpu(engine_, kFlash, kFlashBytes, kRam, kRamBytes);
+      system_.apply_mpu(engine_);
+    }
+    if (between_) {
+      std::exchange(between_, nullptr)();
+    }
+    if (std::exchange(access_failed_, false)) {
+      system_.note_fault(0x8200, failed_address_);
+      fault(kBusFault);
     }
     take_pending();
     if (!locked_up_) {
@@ -106,6 +115,15 @@ Halt Processor::sleep(Time until) {
   return Halt::kTime;
 }
 
+void Processor::fail_access(std::uint32_t address) {
+  const bool is_most_urgent = masks().faultmask || nvic_.active(kNmi) || nvic_.active(kHardFault);
+  if (is_most_urgent && system_.ignores_bus_faults()) {
+    return;
+  }
+  access_failed_ = true;
+  failed_address_ = address;
+}
+
 void Processor::stall(Time delay) { events_.pass(delay); }
 
 ExceptionMasks Processor::masks() const {
@@ -115,7 +133,8 @@ ExceptionMasks Processor::masks() const {
 
 bool Processor::must_stop() {
   return halt_ || events_.now() >= until_ || events_.next() <= events_.now() ||
-         system_.mpu_changed() || (nvic_.attention() && nvic_.next(masks()) != 0);
+         system_.mpu_changed() || access_failed_ || between_ ||
+         (nvic_.attention() && nvic_.next(masks()) != 0);
 }
 
 bool Processor::on_block(std::uint32_t address, std::uint32_t bytes) {
@@ -167,7 +186,7 @@ void Processor::watch_floating_point() {
 }
 
 std::uint32_t Processor::count(std::uint32_t address, std::uint32_t bytes) {
-  const bool in_flash = address - kFlash < kFlashBytes;
+  const bool in_flash = address - kFlash < flash_bytes_;
   if (in_flash && counts_[(address - kFlash) / 2] != 0) {
     return counts_[(address - kFlash) / 2];
   }

@@ -41,7 +41,8 @@ class Bus {
 /// one cycle.
 class Processor final : private EngineClient {
  public:
-  Processor(Core core, Bus& bus, Events& events, Findings& findings);
+  /// @param[in] flash_bytes From 0x08000000 on, where programs run.
+  Processor(Core core, std::uint32_t flash_bytes, Bus& bus, Events& events, Findings& findings);
 
   Engine& engine() { return engine_; }
   Nvic& nvic() { return nvic_; }
@@ -54,6 +55,11 @@ class Processor final : private EngineClient {
   Halt run(Time until);
   /// Ends run() before the next block.
   void halt() { halt_ = true; }
+  /// An access to data ends in an error of the bus, which is taken behind this block, or ignored by
+  /// a handler that says so (CCR.BFHFNMIGN).
+  void fail_access(std::uint32_t address);
+  /// Does this between two blocks, before the next one runs.
+  void between_blocks(std::function<void()> action) { between_ = std::move(action); }
   /// Lets time pass in which the processor does nothing, as while a bus keeps it waiting.
   void stall(Time delay);
 
@@ -89,6 +95,7 @@ class Processor final : private EngineClient {
   std::uint32_t load(std::uint32_t address);
   void store(std::uint32_t address, std::uint32_t value);
 
+  const std::uint32_t flash_bytes_;
   Bus& bus_;
   Events& events_;
   Findings& findings_;
@@ -109,6 +116,9 @@ class Processor final : private EngineClient {
   bool event_ = false;
   bool locked_up_ = false;
   bool broke_ = false;
+  std::function<void()> between_;
+  bool access_failed_ = false;
+  std::uint32_t failed_address_ = 0;
   unsigned last_left_ = 0;  ///< The exception left since which no other code has run.
   unsigned again_ = 0;
 };

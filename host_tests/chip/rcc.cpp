@@ -1,82 +1,24 @@
 #include "chip/rcc.hpp"
 
-#include "chip/stm32g474_registers.hpp"
+#include <utility>
 
 namespace emax::chip {
 namespace {
 
-constexpr std::uint32_t kCr = 0x00, kCfgr = 0x08, kPllcfgr = 0x0C, kCifr = 0x1C, kCicr = 0x20;
-constexpr std::uint32_t kFirstReset = 0x28, kLastReset = 0x40;
-constexpr std::uint32_t kFirstEnable = 0x48, kLastEnable = 0x60;
-constexpr std::uint32_t kCcipr = 0x88, kBdcr = 0x90, kCsr = 0x94, kCrrcr = 0x98;
-
-constexpr std::uint32_t kHsiOn = 1U << 8, kHsiReady = 1U << 10;
-constexpr std::uint32_t kHseOn = 1U << 16, kHseReady = 1U << 17, kHseBypass = 1U << 18;
-constexpr std::uint32_t kSecurity = 1U << 19;
-constexpr std::uint32_t kPllOn = 1U << 24, kPllReady = 1U << 25;
-constexpr std::uint32_t kSecurityFlag = 1U << 8;
-constexpr std::uint32_t kForget = 1U << 23;  // CSR.RMVF
 constexpr std::uint32_t kLsiOn = 1, kLsiReady = 2;
-
-constexpr std::uint32_t kSlow_hz = 80'000'000;  // Above it, changes are in steps.
-
-const Time kHsiStart = ticks(2e-6);
-const Time kHseStart = ticks(2e-3);
-const Time kPllLock = ticks(50e-6);
 const Time kLsiStart = ticks(100e-6);
-const Time kSwitch = ticks(0.5e-6);
-const Time kStep = ticks(1e-6);
-
-unsigned ahb_divider(std::uint32_t code) {
-  constexpr unsigned kDividers[] = {2, 4, 8, 16, 64, 128, 256, 512};
-  return code < 8 ? 1 : kDividers[code - 8];
-}
-unsigned apb_divider(std::uint32_t code) { return code < 4 ? 1 : 2U << (code - 4); }
 
 }  // namespace
-
-Rcc::Rcc(Context context, Clocks& clocks)
-    : RegisterBlock(context, "RCC", rcc_registers()), clocks_(clocks) {}
-
-void Rcc::attach(std::uint32_t enable_offset, unsigned bit, RegisterBlock& block) {
-  gated_.push_back({enable_offset, bit, &block});
-}
 
 void Rcc::on_reset() {
   watchdog_runs_ = false;
   for (const Gated& gated : gated_) {
-    gated.block->gate() = {(stored(gated.offset) >> gated.bit & 1) != 0, false, false};
+    *gated.gate = {(stored(gated.offset) >> gated.bit & 1) != 0, false, false};
+  }
+  if (gates_changed_) {
+    gates_changed_();
   }
   context_.wires.set(kNmi, this, false);
-  update();
-}
-
-void Rcc::set_hse_dead(bool dead) {
-  hse_dead_ = dead;
-  if (!dead || !has(kCr, kHseReady)) {
-    return;
-  }
-  clear_bits(kCr, kHseReady);
-  const bool feeds_pll = has(kCr, kPllOn) && field(stored(kPllcfgr), 0, 2) == 3;
-  const unsigned used = field(stored(kCfgr), 2, 2);
-  const bool in_use = used == 2 || (used == 3 && feeds_pll);
-  if (!has(kCr, kSecurity)) {
-    if (in_use) {
-      report("clock_lost", kCr);
-    }
-    return;
-  }
-  // The clock security system, RM0440 7.2.10: back to HSI, HSE and a PLL on it off, NMI.
-  clear_bits(kCr, kHseOn | kSecurity);
-  if (feeds_pll) {
-    clear_bits(kCr, kPllOn | kPllReady);
-  }
-  set_bits(kCr, kHsiOn | kHsiReady);
-  if (in_use) {
-    put(kCfgr, (stored(kCfgr) & ~0xFU) | 5U);
-  }
-  set_bits(kCifr, kSecurityFlag);
-  context_.wires.set(kNmi, this, has(kCifr, kSecurityFlag));
   update();
 }
 
@@ -84,213 +26,43 @@ std::uint32_t Rcc::on_read(std::uint32_t offset, std::uint32_t value) {
   // Reading any of these registers back takes as long as a clock needs to arrive.
   for (const Gated& gated : gated_) {
     if (gated.offset == offset) {
-      gated.block->gate().fresh = false;
+      gated.gate->fresh = false;
     }
   }
-  if (offset == kCsr) {
-    return (value & 0x01FFFFFF & ~kForget) | causes_ | (lsi_runs() ? kLsiReady & value : 0);
+  if (offset == map_.slow_clock && (value & kLsiReady) != 0 && !lsi_runs()) {
+    value &= ~kLsiReady;
+  }
+  if (offset == map_.cause_register) {
+    value = (value & ~map_.forget & ~map_.cause_mask) | causes_;
   }
   return value;
 }
 
 void Rcc::on_write(std::uint32_t offset, std::uint32_t value) {
-  if (offset >= kFirstEnable && offset <= kLastEnable) {
+  if (offset >= map_.first_enable && offset <= map_.last_enable) {
     write_gates(offset, value);
-    return;
-  }
-  if (offset >= kFirstReset && offset <= kLastReset) {
+  } else if (offset + map_.reset_below >= map_.first_enable &&
+             offset + map_.reset_below <= map_.last_enable) {
     write_resets(offset, value);
-    return;
-  }
-  switch (offset) {
-    case kCr:
-      write_control(value);
-      break;
-    case kCfgr:
-      write_configuration(value);
-      break;
-    case kPllcfgr:
-      if (has(kCr, kPllOn)) {
-        report("pll_changed_while_on", offset, value);
-        break;
-      }
-      put(offset, masked(offset, value));
-      break;
-    case kCicr:
-      put(kCifr, stored(kCifr) & ~value);
-      context_.wires.set(kNmi, this, has(kCifr, kSecurityFlag));
-      break;
-    case kCsr:
-      put(offset, masked(offset, value) & ~kForget);
-      if ((value & kForget) != 0) {
-        causes_ = 0;
-      }
-      if ((value & kLsiOn) != 0) {
-        context_.events.after(kLsiStart, [this] { set_bits(kCsr, kLsiReady); });
-      } else {
-        clear_bits(kCsr, kLsiReady);
-      }
-      break;
-    case kBdcr:
-    case kCrrcr:
-      put(offset, masked(offset, value));
-      put(offset, (stored(offset) & ~2U) | (stored(offset) << 1 & 2U));
-      break;
-    case kCcipr:
-      put(offset, masked(offset, value));
-      update();
-      break;
-    default:
-      put(offset, masked(offset, value));
-      break;
-  }
-}
-
-void Rcc::start_source(std::uint32_t on, std::uint32_t ready, bool works, Time delay) {
-  if (!works) {
-    return;
-  }
-  context_.events.after(delay, [this, on, ready] {
-    if ((stored(kCr) & on) != 0) {
-      set_bits(kCr, ready);
-      update();
+  } else if (offset == map_.cause_register || offset == map_.slow_clock) {
+    if (offset == map_.cause_register && (value & map_.forget) != 0) {
+      causes_ = 0;
     }
-  });
-}
-
-void Rcc::write_control(std::uint32_t value) {
-  const std::uint32_t old = stored(kCr);
-  std::uint32_t next = masked(kCr, value) | (old & kSecurity);
-  const unsigned used = field(stored(kCfgr), 2, 2);
-  const unsigned source = field(stored(kPllcfgr), 0, 2);
-  const bool pll = (old & kPllOn) != 0;
-  const auto in_use = [&](std::uint32_t on) {
-    return on == kPllOn   ? used == 3
-           : on == kHsiOn ? used == 1 || (pll && source == 2)
-                          : used == 2 || (pll && source == 3);
-  };
-  for (const std::uint32_t on : {kHsiOn, kHseOn, kPllOn}) {
-    if ((old & on) != 0 && (next & on) == 0 && in_use(on)) {
-      report("clock_source_switched_off", kCr, on);
-      next |= on;
+    put(offset, masked(offset, value) & ~(offset == map_.cause_register ? map_.forget : 0U));
+    if (offset == map_.slow_clock) {
+      write_slow_clock(value);
     }
-    const std::uint32_t ready = on == kHsiOn ? kHsiReady : on << 1;
-    if ((next & on) == 0) {
-      next &= ~ready;
-    }
-  }
-  put(kCr, next);
-  const std::uint32_t started = next & ~old;
-  if ((started & kHsiOn) != 0) {
-    start_source(kHsiOn, kHsiReady, true, kHsiStart);
-  }
-  if ((started & kHseOn) != 0) {
-    // In bypass mode nothing comes from a crystal.
-    context_.events.after(kHseStart, [this] {
-      start_source(kHseOn, kHseReady, !hse_dead_ && !has(kCr, kHseBypass), 0);
-    });
-  }
-  if ((started & kPllOn) != 0) {
-    check_pll();
-    start_source(kPllOn, kPllReady, pll_source_hz() != 0, kPllLock);
-  }
-  update();
-}
-
-std::uint32_t Rcc::pll_source_hz() const {
-  switch (field(stored(kPllcfgr), 0, 2)) {
-    case 2:
-      return has(kCr, kHsiReady) ? kHsi_hz : 0;
-    case 3:
-      return has(kCr, kHseReady) ? kHse_hz : 0;
-    default:
-      return 0;
+  } else {
+    write_own(offset, value);
   }
 }
 
-void Rcc::check_pll() const {
-  const std::uint32_t settings = stored(kPllcfgr);
-  if (pll_source_hz() == 0) {
-    report("pll_without_source", kPllcfgr, settings);
-    return;
+void Rcc::write_slow_clock(std::uint32_t value) {
+  if ((value & kLsiOn) != 0) {
+    context_.events.after(kLsiStart, [this] { set_bits(map_.slow_clock, kLsiReady); });
+  } else {
+    clear_bits(map_.slow_clock, kLsiReady);
   }
-  const std::uint32_t input_hz = pll_source_hz() / (field(settings, 4, 4) + 1);
-  const std::uint32_t factor = field(settings, 8, 7);
-  const std::uint64_t vco_hz = std::uint64_t{input_hz} * factor;
-  if (input_hz < 2'660'000 || input_hz > 16'000'000) {
-    report("pll_input_out_of_range", kPllcfgr, input_hz);
-  }
-  if (vco_hz < 96'000'000 || vco_hz > 344'000'000 || factor < 8) {
-    report("vco_out_of_range", kPllcfgr, static_cast<std::uint32_t>(vco_hz));
-  }
-}
-
-std::uint32_t Rcc::source_hz(unsigned choice) const {
-  const std::uint32_t settings = stored(kPllcfgr);
-  switch (choice) {
-    case 1:
-      return has(kCr, kHsiReady) ? kHsi_hz : 0;
-    case 2:
-      return has(kCr, kHseReady) ? kHse_hz : 0;
-    case 3:
-      if (!has(kCr, kPllReady) || (settings >> 24 & 1) == 0) {
-        return 0;
-      }
-      return static_cast<std::uint32_t>(std::uint64_t{pll_source_hz()} * field(settings, 8, 7) /
-                                        (field(settings, 4, 4) + 1) /
-                                        (2 * (field(settings, 25, 2) + 1)));
-    default:
-      return 0;
-  }
-}
-
-void Rcc::write_configuration(std::uint32_t value) {
-  const std::uint32_t old = stored(kCfgr);
-  const std::uint32_t next = masked(kCfgr, value);
-  const unsigned wanted = field(next, 0, 2);
-  put(kCfgr, next);
-  if (wanted != field(old, 0, 2)) {
-    if (source_hz(wanted) == 0) {
-      const bool output_off = wanted == 3 && (stored(kPllcfgr) >> 24 & 1) == 0;
-      report(output_off ? "pll_output_off" : "switch_to_dead_clock", kCfgr, value);
-      put(kCfgr, (next & ~3U) | field(old, 0, 2));
-      return;
-    }
-    if (source_hz(wanted) > kSlow_hz && ahb_divider(field(next, 4, 4)) == 1) {
-      report("clock_step_too_big", kCfgr, source_hz(wanted));
-    }
-    context_.events.after(kSwitch, [this] { switch_done(); });
-    return;
-  }
-  const bool faster = ahb_divider(field(next, 4, 4)) < ahb_divider(field(old, 4, 4));
-  if (faster && clocks_.sysclk_hz > kSlow_hz && context_.events.now() < switched_at_ + kStep) {
-    report("clock_step_too_soon", kCfgr, value);
-  }
-  update();
-}
-
-void Rcc::switch_done() {
-  put(kCfgr, (stored(kCfgr) & ~0xCU) | field(stored(kCfgr), 0, 2) << 2);
-  switched_at_ = context_.events.now();
-  update();
-}
-
-void Rcc::update() {
-  const std::uint32_t settings = stored(kCfgr);
-  const std::uint32_t running_hz = source_hz(field(settings, 2, 2));
-  clocks_.sysclk_hz = running_hz != 0 ? running_hz : kHsi_hz;
-  clocks_.hclk_hz = clocks_.sysclk_hz / ahb_divider(field(settings, 4, 4));
-  const unsigned divider1 = apb_divider(field(settings, 8, 3));
-  clocks_.pclk1_hz = clocks_.hclk_hz / divider1;
-  clocks_.pclk2_hz = clocks_.hclk_hz / apb_divider(field(settings, 11, 3));
-  clocks_.timer1_hz = divider1 == 1 ? clocks_.pclk1_hz : 2 * clocks_.pclk1_hz;
-  const std::uint32_t choice = stored(kCcipr);
-  const std::uint32_t uart_hz[] = {clocks_.pclk1_hz, clocks_.sysclk_hz, source_hz(1), 0};
-  clocks_.lpuart_hz = uart_hz[field(choice, 10, 2)];
-  // ADC12SEL: none, PLL's P output (not modelled, see the README), system clock.
-  const std::uint32_t adc_hz[] = {0, 0, clocks_.sysclk_hz, 0};
-  clocks_.adc_async_hz = adc_hz[field(choice, 28, 2)];
-  clocks_.changed();
 }
 
 void Rcc::write_gates(std::uint32_t offset, std::uint32_t value) {
@@ -301,23 +73,25 @@ void Rcc::write_gates(std::uint32_t offset, std::uint32_t value) {
       continue;
     }
     const bool on = (stored(offset) >> gated.bit & 1) != 0;
-    Gate& gate = gated.block->gate();
-    gate.fresh = on && ((old >> gated.bit & 1) == 0 || gate.fresh);
-    gate.on = on;
+    gated.gate->fresh = on && ((old >> gated.bit & 1) == 0 || gated.gate->fresh);
+    gated.gate->on = on;
+  }
+  if (gates_changed_) {
+    gates_changed_();
   }
 }
 
 void Rcc::write_resets(std::uint32_t offset, std::uint32_t value) {
   put(offset, masked(offset, value));
   for (const Gated& gated : gated_) {
-    if (gated.offset != offset + 0x20) {
+    if (gated.offset != offset + map_.reset_below || gated.block == nullptr) {
       continue;
     }
     const bool held = (stored(offset) >> gated.bit & 1) != 0;
-    if (held && !gated.block->gate().in_reset) {
+    if (held && !gated.gate->in_reset) {
       gated.block->reset();
     }
-    gated.block->gate().in_reset = held;
+    gated.gate->in_reset = held;
   }
 }
 

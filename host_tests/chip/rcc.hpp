@@ -1,7 +1,8 @@
-// Reset and clock control: sources, PLL, prescalers, gates, and why there was a reset.
+// Reset and clock control, as far as all chips have it: gates, resets of blocks, why there was a
+// reset. The clock tree is the chip's own.
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <vector>
 
 #include "chip/clocks.hpp"
@@ -9,58 +10,83 @@
 
 namespace emax::chip {
 
-/// Why the chip starts; bits of RCC_CSR.
-inline constexpr std::uint32_t kPowerOnReset = 0x0C000000;  ///< Brown-out and pin.
-inline constexpr std::uint32_t kPinReset = 0x04000000;
-inline constexpr std::uint32_t kSoftwareReset = 0x14000000;  ///< The chip pulls its own pin, too.
-inline constexpr std::uint32_t kWatchdogReset = 0x24000000;
+/// Why the chip starts; bits of the register that tells.
+struct ResetCauses {
+  std::uint32_t power_on;
+  std::uint32_t pin;
+  std::uint32_t software;  ///< The chip pulls its own pin, too.
+  std::uint32_t watchdog;
+};
 
-/// Found here: "pll_changed_while_on", "pll_input_out_of_range", "vco_out_of_range",
-/// "pll_without_source", "pll_output_off", "clock_source_switched_off", "switch_to_dead_clock",
-/// "clock_step_too_big", "clock_step_too_soon", "clock_lost".
-class Rcc final : public RegisterBlock {
+class Rcc : public RegisterBlock {
  public:
-  Rcc(Context context, Clocks& clocks);
+  /// Bit of an enable register that is the clock of a block, and of its register of resets.
+  void attach(std::uint32_t enable_offset, unsigned bit, RegisterBlock& block) {
+    gated_.push_back({enable_offset, bit, &block.gate(), &block});
+  }
+  /// The same for a memory.
+  void attach(std::uint32_t enable_offset, unsigned bit, Gate& gate) {
+    gated_.push_back({enable_offset, bit, &gate, nullptr});
+  }
+  /// Hears of each change of a gate.
+  void on_gates(std::function<void()> action) { gates_changed_ = std::move(action); }
 
-  /// Bit of an ENR register that is the clock of a block; the reset's bit is 0x20 below.
-  void attach(std::uint32_t enable_offset, unsigned bit, RegisterBlock& block);
+  const ResetCauses& cause_bits() const { return map_.causes; }
   void note_reset(std::uint32_t cause) { causes_ |= cause; }
   void forget_causes() { causes_ = 0; }
+  std::uint32_t causes() const { return causes_; }
 
-  bool lsi_runs() const { return has(0x94, 2) || watchdog_runs_; }
+  bool lsi_runs() const { return has(map_.slow_clock, 2) || watchdog_runs_; }
   void set_watchdog_runs(bool runs) { watchdog_runs_ = runs; }
 
-  /// Test: the crystal does not start, or stops.
-  void set_hse_dead(bool dead);
+  /// Test: the external clock does not start, or stops.
+  virtual void set_hse_dead(bool dead) = 0;
 
- private:
-  struct Gated {
-    std::uint32_t offset;
-    unsigned bit;
-    RegisterBlock* block;
+ protected:
+  /// Where a chip has what all have.
+  struct Map {
+    std::uint32_t first_enable, last_enable;
+    std::uint32_t reset_below;  ///< An enable register's offset less that of its resets.
+    std::uint32_t slow_clock;   ///< LSION in bit 0, LSIRDY in bit 1.
+    std::uint32_t cause_register, cause_mask, forget;
+    ResetCauses causes;
   };
+
+  Rcc(Context context, Clocks& clocks, Registers registers, const Map& map)
+      : RegisterBlock(context, "RCC", std::move(registers)), clocks_(clocks), map_(map) {}
 
   std::uint32_t on_read(std::uint32_t offset, std::uint32_t value) override;
   void on_write(std::uint32_t offset, std::uint32_t value) override;
   void on_reset() override;
 
-  void write_control(std::uint32_t value);
-  void start_source(std::uint32_t on, std::uint32_t ready, bool works, Time delay);
-  void check_pll() const;
-  std::uint32_t pll_source_hz() const;
-  void write_configuration(std::uint32_t value);
-  void switch_done();
-  std::uint32_t source_hz(unsigned choice) const;
-  void update();
+  /// Registers that are the chip's own.
+  virtual void write_own(std::uint32_t offset, std::uint32_t value) = 0;
+  virtual void update() = 0;
+  void write_slow_clock(std::uint32_t value);
+
+  Clocks& clocks_;
+
+ private:
+  struct Gated {
+    std::uint32_t offset;
+    unsigned bit;
+    Gate* gate;
+    RegisterBlock* block;  ///< Null for a memory.
+  };
   void write_gates(std::uint32_t offset, std::uint32_t value);
   void write_resets(std::uint32_t offset, std::uint32_t value);
 
-  Clocks& clocks_;
+  Map map_;
   std::vector<Gated> gated_;
+  std::function<void()> gates_changed_;
   std::uint32_t causes_ = 0;
   bool watchdog_runs_ = false;
-  bool hse_dead_ = false;
-  Time switched_at_ = 0;
 };
+
+constexpr unsigned ahb_divider(std::uint32_t code) {
+  constexpr unsigned kDividers[] = {2, 4, 8, 16, 64, 128, 256, 512};
+  return code < 8 ? 1 : kDividers[code - 8];
+}
+constexpr unsigned apb_divider(std::uint32_t code) { return code < 4 ? 1 : 2U << (code - 4); }
 
 }  // namespace emax::chip

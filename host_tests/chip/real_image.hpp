@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "chip/virtual_board.hpp"
+#include "chip/tested_board.hpp"
 
 namespace emax::chip {
 
@@ -35,9 +35,10 @@ class RealImage : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::ifstream(EMAX_CHIP_IMAGE)) {
-      GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset nucleo-g474re";
+      GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset "
+                   << Tested::kPreset;
     }
-    board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, bench);
+    put_on_bench(bench);
   }
 
   // Nothing is used wrongly in any run; what a fault provokes is no use of the program's.
@@ -51,6 +52,11 @@ class RealImage : public testing::Test {
     EXPECT_LE(board->analog.greatest_excursion_v(), kDriveLimit_v + kCode_v);
   }
 
+  /// A board of its own with what is connected to it.
+  void put_on_bench(BenchInVolts& connected) {
+    board = std::make_unique<TestedBoard>(EMAX_CHIP_IMAGE, connected);
+    Tested::prepare(board->chip);
+  }
   void boot() {
     board->chip.power_on();
     board->chip.run_for(0.02);
@@ -100,11 +106,11 @@ class RealImage : public testing::Test {
   /// How often the LED goes on or off.
   unsigned led_changes(double time_s) {
     unsigned changes = 0;
-    bool was_on = board->chip.ports[0]->output(5);
+    bool was_on = Tested::led(board->chip);
     for (double passed_s = 0.0; passed_s < time_s; passed_s += 0.01) {
       board->chip.run_for(0.01);
-      changes += board->chip.ports[0]->output(5) != was_on ? 1U : 0U;
-      was_on = board->chip.ports[0]->output(5);
+      changes += Tested::led(board->chip) != was_on ? 1U : 0U;
+      was_on = Tested::led(board->chip);
     }
     return changes;
   }
@@ -112,19 +118,18 @@ class RealImage : public testing::Test {
     return seconds(until - from) / board->chip.tim6.period_s();
   }
 
-  /// Both converters of this chip sample at the same instant. At 50 kS/s the images of a drive of
-  /// 5 kHz begin at 45 kHz: a filter for 100 kS/s would let 1e-3 of it through to the reference.
+  /// Both converters of these chips sample at the same instant.
   static sim::BenchSettings bench_settings() {
     sim::BenchSettings settings;
     settings.skew_s = 0.0;
-    settings.shaker.reconstruction_hz = 12500.0;
+    settings.shaker.reconstruction_hz = Tested::kReconstruction_hz;
     return settings;
   }
 
   /// Findings that come of what the test has done to the chip.
   std::set<std::string> provoked = {"adc_overrun", "dac_underrun"};
   SimulatedBench bench{bench_settings()};
-  std::unique_ptr<VirtualBoard> board;
+  std::unique_ptr<TestedBoard> board;
 };
 
 }  // namespace emax::chip

@@ -3,7 +3,7 @@
 // SVD file, both Apache-2.0; the header is right where they differ.
 #include "chip/stm32g474_registers.hpp"
 
-namespace emax::chip {
+namespace emax::chip::g474 {
 
 Registers rcc_registers() {
   return {
@@ -85,12 +85,16 @@ Registers flash_registers() {
   };
 }
 
-Registers gpio_registers() {
+// After reset all pins are analog, but those of the debug probe.
+Registers gpio_registers(char letter) {
+  const bool a = letter == 'A', b = letter == 'B';
+  const std::uint32_t modes = a ? 0xABFFFFFF : b ? 0xFFFFFEBF : 0xFFFFFFFF;
+  const std::uint32_t pulls = a ? 0x64000000 : b ? 0x00000100 : 0;
   return {
-      {"MODER", 0x00, 0xABFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF},
+      {"MODER", 0x00, modes, 0xFFFFFFFF, 0xFFFFFFFF},
       {"OTYPER", 0x04, 0x00000000, 0x0000FFFF, 0x0000FFFF},
-      {"OSPEEDR", 0x08, 0x0C000000, 0xFFFFFFFF, 0xFFFFFFFF},
-      {"PUPDR", 0x0C, 0x64000000, 0xFFFFFFFF, 0xFFFFFFFF},
+      {"OSPEEDR", 0x08, a ? 0x0C000000U : 0U, 0xFFFFFFFF, 0xFFFFFFFF},
+      {"PUPDR", 0x0C, pulls, 0xFFFFFFFF, 0xFFFFFFFF},
       {"IDR", 0x10, 0x00000000, 0x0000FFFF, 0x00000000},
       {"ODR", 0x14, 0x00000000, 0x0000FFFF, 0x0000FFFF},
       {"BSRR", 0x18, 0x00000000, 0xFFFFFFFF, 0xFFFFFFFF},
@@ -334,4 +338,4 @@ Registers exti_registers() {
   };
 }
 
-}  // namespace emax::chip
+}  // namespace emax::chip::g474

@@ -3,12 +3,13 @@
 
 #include "chip/register_block.hpp"
 
-namespace emax::chip {
+namespace emax::chip::g474 {
 
 Registers rcc_registers();
 Registers pwr_registers();
 Registers flash_registers();
-Registers gpio_registers();
+/// @param[in] letter Of the port; A and B have pins of the debug probe.
+Registers gpio_registers(char letter);
 Registers basic_timer_registers();
 Registers lpuart_registers();
 Registers dma_registers();
@@ -22,4 +23,4 @@ Registers dbgmcu_registers();
 Registers general_timer_registers();
 Registers exti_registers();
 
-}  // namespace emax::chip
+}  // namespace emax::chip::g474

@@ -9,14 +9,25 @@ constexpr std::uint32_t kSysTickEnable = 1, kSysTickInterrupt = 2, kSysTickCore 
 constexpr std::uint32_t kTraceEnable = 1U << 24, kCycleCounter = 1;
 constexpr std::uint32_t kMpuEnable = 1, kMpuDefaultMap = 4;
 
+// r0p1 with up to 112 interrupts; r1p1 with up to 240 and caches of 16 KB each.
+constexpr CoreFeatures kCortexM4 = {0x410FC241, 8, 0x200, false, false};
+constexpr CoreFeatures kCortexM7 = {0x411FC271, 16, 0x400, true, true};
+
+constexpr std::uint32_t kDataCache = 1U << 16, kInstructionCache = 1U << 17;
+constexpr unsigned kDataCacheLines = 16 * 1024 / 32;
+constexpr std::uint32_t kTraceKey = 0xC5ACCE55;
+
 std::uint64_t region_bytes(std::uint32_t attributes) {
   return std::uint64_t{2} << ((attributes >> 1) & 31);
 }
 
 }  // namespace
 
-SystemSpace::SystemSpace(Events& events, Findings& findings, Nvic& nvic)
-    : events_(events), findings_(findings), nvic_(nvic) {}
+SystemSpace::SystemSpace(Core core, Events& events, Findings& findings, Nvic& nvic)
+    : core_(core == Core::kCortexM7 ? kCortexM7 : kCortexM4),
+      events_(events),
+      findings_(findings),
+      nvic_(nvic) {}
 
 void SystemSpace::set_clock(std::function<Time()> cycle, std::function<std::uint64_t()> cycles) {
   cycle_ = std::move(cycle);
@@ -26,7 +37,9 @@ void SystemSpace::set_clock(std::function<Time()> cycle, std::function<std::uint
 void SystemSpace::reset(std::uint32_t vectors, bool power_lost) {
   vtor_ = vectors;
   aircr_ = scr_ = cfsr_ = hfsr_ = mmfar_ = bfar_ = cpacr_ = 0;
-  ccr_ = 0x200;
+  ccr_ = core_.caches ? 0x40200 : 0x200;
+  cleared_lines_ = 0;
+  code_cleared_ = false;
   fpccr_ = 0xC0000000;
   mpu_control_ = mpu_number_ = 0;
   mpu_ = {};
@@ -36,6 +49,7 @@ void SystemSpace::reset(std::uint32_t vectors, bool power_lost) {
   events_.cancel(std::exchange(systick_event_, 0));
   if (power_lost) {  // Other resets leave the debug parts alone.
     demcr_ = 0;
+    trace_unlocked_ = false;
     dwt_control_ = 0x40000000;
     cycle_count_ = 0;
   }
@@ -75,8 +89,8 @@ std::uint32_t SystemSpace::read_word(std::uint32_t address) {
   }
   if (address >= 0xE000ED90 && address <= 0xE000EDA0) {
     const MpuRegion& region = mpu_[mpu_number_];
-    const std::uint32_t values[] = {0x800, mpu_control_, mpu_number_, region.base | mpu_number_,
-                                    region.attributes};
+    const std::uint32_t values[] = {core_.mpu_regions << 8, mpu_control_, mpu_number_,
+                                    region.base | mpu_number_, region.attributes};
     return values[(address - 0xE000ED90) / 4];
   }
   if (address >= 0xE000ED00 && address < 0xE000EDF0) {
@@ -92,6 +106,8 @@ void SystemSpace::write_word(std::uint32_t address, std::uint32_t value) {
     write_nvic(address - 0xE000E000, value);
   } else if (address >= 0xE000ED94 && address <= 0xE000EDB8) {
     write_mpu(address, value);
+  } else if (write_cache(address, value)) {
+    // Done.
   } else if (address == 0xE000EF00) {
     nvic_.pend(kFirstInterrupt + (value & 0x1FF), true);
   } else if (address >= 0xE000ED00 && address < 0xE000EDF0) {
@@ -171,7 +187,7 @@ std::uint32_t SystemSpace::read_control(std::uint32_t address) const {
   const auto bit = [](bool set, unsigned position) { return std::uint32_t{set} << position; };
   switch (address) {
     case 0xE000ED00:
-      return 0x410FC241;  // Cortex-M4 r0p1.
+      return core_.cpuid;
     case 0xE000ED04:
       return active_exception | bit(nvic_.pending(kSysTick), 26) | bit(nvic_.pending(kPendSv), 28) |
              bit(nvic_.pending(kNmi), 31);
@@ -201,6 +217,12 @@ std::uint32_t SystemSpace::read_control(std::uint32_t address) const {
       return mmfar_;
     case 0xE000ED38:
       return bfar_;
+    case 0xE000ED78:
+      return core_.caches ? 0x09000003 : 0;
+    case 0xE000ED7C:
+      return core_.caches ? 0x8303C003 : 0;
+    case 0xE000ED80:
+      return core_.caches ? 0xF00FE019 : 0;  // 128 sets of 4 lines of 32 bytes.
     case 0xE000ED88:
       return cpacr_;
     default:
@@ -226,10 +248,10 @@ void SystemSpace::write_control(std::uint32_t address, std::uint32_t value) {
       pend_from_icsr(value);
       break;
     case 0xE000ED08:
-      if ((value & 0x1FF) != 0) {
+      if (value % core_.vectors_alignment != 0) {
         findings_.report("vectors_misaligned", "SCB.VTOR", value);
       }
-      vtor_ = value & ~0x1FFU;
+      vtor_ = value & ~(core_.vectors_alignment - 1);
       break;
     case 0xE000ED0C:
       if (value >> 16 != 0x05FA) {
@@ -246,7 +268,7 @@ void SystemSpace::write_control(std::uint32_t address, std::uint32_t value) {
       scr_ = value & 0x16;
       break;
     case 0xE000ED14:
-      ccr_ = value;
+      write_configuration(value);
       break;
     case 0xE000ED18:
     case 0xE000ED1C:
@@ -358,11 +380,11 @@ void SystemSpace::write_mpu(std::uint32_t address, std::uint32_t value) {
       mpu_control_ = value & 7;
       break;
     case 0xE000ED98:
-      mpu_number_ = value & 7;
+      mpu_number_ = value % core_.mpu_regions;
       break;
     case 0xE000ED9C:
       if ((value & 0x10) != 0) {
-        mpu_number_ = value & 7;
+        mpu_number_ = (value & 0xF) % core_.mpu_regions;
       }
       mpu_[mpu_number_].base = value & ~0x1FU;
       break;
@@ -377,10 +399,7 @@ void SystemSpace::write_mpu(std::uint32_t address, std::uint32_t value) {
   }
 }
 
-std::uint32_t SystemSpace::permissions_at(std::uint32_t address, std::uint32_t otherwise) const {
-  if ((mpu_control_ & kMpuEnable) == 0) {
-    return otherwise;
-  }
+const MpuRegion* SystemSpace::region_at(std::uint32_t address) const {
   for (std::size_t i = mpu_.size(); i-- > 0;) {  // The higher number wins.
     const MpuRegion& region = mpu_[i];
     const std::uint64_t size = region_bytes(region.attributes);
@@ -391,26 +410,77 @@ std::uint32_t SystemSpace::permissions_at(std::uint32_t address, std::uint32_t o
     if (size >= 256 && (region.attributes >> (8 + part) & 1) != 0) {
       continue;
     }
-    const std::uint32_t access = region.attributes >> 24 & 7;
-    const bool write = access == 1 || access == 2 || access == 3;
-    const bool read = write || access == 5 || access == 6 || access == 7;
-    const bool execute = read && (region.attributes >> 28 & 1) == 0;
-    return std::uint32_t{read} * UC_PROT_READ | std::uint32_t{write} * UC_PROT_WRITE |
-           std::uint32_t{execute} * UC_PROT_EXEC;
+    return &region;
   }
-  return (mpu_control_ & kMpuDefaultMap) != 0 ? otherwise : 0U;
+  return nullptr;
 }
 
-void SystemSpace::apply_mpu(Engine& engine, std::uint32_t flash, std::size_t flash_bytes,
-                            std::uint32_t ram, std::size_t ram_bytes) {
+std::uint32_t SystemSpace::permissions_at(std::uint32_t address, std::uint32_t otherwise) const {
+  if ((mpu_control_ & kMpuEnable) == 0) {
+    return otherwise;
+  }
+  const MpuRegion* const region = region_at(address);
+  if (region == nullptr) {
+    return (mpu_control_ & kMpuDefaultMap) != 0 ? otherwise : 0U;
+  }
+  const std::uint32_t access = region->attributes >> 24 & 7;
+  const bool write = access == 1 || access == 2 || access == 3;
+  const bool read = write || access == 5 || access == 6 || access == 7;
+  const bool execute = read && (region->attributes >> 28 & 1) == 0;
+  return std::uint32_t{read} * UC_PROT_READ | std::uint32_t{write} * UC_PROT_WRITE |
+         std::uint32_t{execute} * UC_PROT_EXEC;
+}
+
+void SystemSpace::apply_mpu(Engine& engine) {
   mpu_changed_ = false;
-  const auto apply = [&](std::uint32_t begin, std::size_t bytes, std::uint32_t otherwise) {
-    for (std::uint32_t at = begin; at < begin + bytes; at += kGranule) {
-      engine.protect(at, permissions_at(at, otherwise) & otherwise);
-    }
-  };
-  apply(flash, flash_bytes, UC_PROT_READ | UC_PROT_EXEC);
-  apply(ram, ram_bytes, UC_PROT_ALL);
+  engine.protect_all([this](std::uint32_t address, std::uint32_t otherwise) {
+    return permissions_at(address, otherwise) & otherwise;
+  });
+}
+
+// Armv7-M B3.5.2, B3.1; memory that is shared is not kept in the cache of a Cortex-M7 (CACR.SIWT is
+// not modelled). Tightly coupled memories are never cached: who asks knows where they are.
+bool SystemSpace::is_cached(std::uint32_t address) const {
+  if (!core_.caches || (ccr_ & kDataCache) == 0) {
+    return false;
+  }
+  const MpuRegion* const region = (mpu_control_ & kMpuEnable) != 0 ? region_at(address) : nullptr;
+  if (region == nullptr) {
+    return address < 0x40000000 || (address >= 0x60000000 && address < 0xA0000000);
+  }
+  const std::uint32_t attributes = region->attributes;
+  const bool shared = (attributes >> 18 & 1) != 0;
+  const bool outer = (attributes >> 21 & 1) != 0;  // TEX 1BB: the inner policy is in C and B.
+  const std::uint32_t c_and_b = attributes >> 16 & 3;
+  return !shared && (outer ? c_and_b != 0 : (attributes >> 17 & 1) != 0);
+}
+
+void SystemSpace::write_configuration(std::uint32_t value) {
+  const std::uint32_t switched_on = value & ~ccr_;
+  if (!core_.caches && (switched_on & (kDataCache | kInstructionCache)) != 0) {
+    findings_.report("reserved_bit_written", "SCB.CCR", value);
+  }
+  if (core_.caches && (switched_on & kDataCache) != 0 && cleared_lines_ < kDataCacheLines) {
+    findings_.report("cache_not_invalidated", "SCB.CCR", value);
+  }
+  if (core_.caches && (switched_on & kInstructionCache) != 0 && !code_cleared_) {
+    findings_.report("cache_not_invalidated", "SCB.CCR", value);
+  }
+  ccr_ = value;
+}
+
+// Maintenance of the caches: they are not modelled, but that they are cleared before they are on.
+bool SystemSpace::write_cache(std::uint32_t address, std::uint32_t) {
+  if (!core_.caches) {
+    return false;
+  }
+  if (address == 0xE000EF50) {
+    code_cleared_ = true;
+  } else if (address == 0xE000EF60 || address == 0xE000EF74) {
+    ++cleared_lines_;
+  }
+  return address == 0xE000ED84 || (address >= 0xE000EF50 && address <= 0xE000EF78) ||
+         (address >= 0xE000EF90 && address <= 0xE000EFA8);
 }
 
 bool SystemSpace::mpu_forbids(std::uint32_t address, bool write) const {
@@ -452,12 +522,17 @@ void SystemSpace::write_debug(std::uint32_t address, std::uint32_t value) {
         findings_.report("trace_off", "DWT", value);
         return;
       }
+      if (core_.trace_lock && !trace_unlocked_) {
+        findings_.report("trace_locked", "DWT", value);
+        return;
+      }
       if (address == 0xE0001000) {
         dwt_control_ = (dwt_control_ & 0xF0000000) | (value & 0x0FFFFFFF);
       }
       break;
     case 0xE0001FB0:
-      return;  // The lock, which only some parts have.
+      trace_unlocked_ = value == kTraceKey;  // The lock, which only some parts have.
+      return;
     default:
       findings_.report("no_such_register", "debug", address);
       return;

@@ -12,6 +12,15 @@
 
 namespace emax::chip {
 
+/// What differs between the processors.
+struct CoreFeatures {
+  std::uint32_t cpuid;
+  unsigned mpu_regions;
+  std::uint32_t vectors_alignment;  ///< For all interrupts of the chip.
+  bool caches;
+  bool trace_lock;  ///< DWT must be unlocked before it is written.
+};
+
 /// One region of the memory protection unit.
 struct MpuRegion {
   std::uint32_t base = 0;
@@ -21,7 +30,7 @@ struct MpuRegion {
 /// What the registers say, and what they do to NVIC and engine.
 class SystemSpace {
  public:
-  SystemSpace(Events& events, Findings& findings, Nvic& nvic);
+  SystemSpace(Core core, Events& events, Findings& findings, Nvic& nvic);
 
   void reset(std::uint32_t vectors, bool power_lost);
   /// The time of a cycle and the count of cycles come from the processor.
@@ -35,8 +44,12 @@ class SystemSpace {
   bool fpu_enabled() const { return (cpacr_ & 0xF00000) == 0xF00000; }
   /// Does the regions' permissions; not while the engine runs.
   bool mpu_changed() const { return mpu_changed_; }
-  void apply_mpu(Engine& engine, std::uint32_t flash, std::size_t flash_bytes, std::uint32_t ram,
-                 std::size_t ram_bytes);
+  void apply_mpu(Engine& engine);
+  /// After memory has come or gone.
+  void renew_mpu() { mpu_changed_ = true; }
+  bool ignores_bus_faults() const { return (ccr_ & 0x100) != 0; }
+  /// Whether data at this address are kept in the data cache, which is on.
+  bool is_cached(std::uint32_t address) const;
   /// @returns Whether the MPU forbids this access, so that it is a MemManage fault.
   bool mpu_forbids(std::uint32_t address, bool write) const;
 
@@ -65,7 +78,12 @@ class SystemSpace {
   Time systick_period() const;
   void start_systick();
   std::uint32_t permissions_at(std::uint32_t address, std::uint32_t otherwise) const;
+  /// The region that decides here; null: none.
+  const MpuRegion* region_at(std::uint32_t address) const;
+  bool write_cache(std::uint32_t address, std::uint32_t value);
+  void write_configuration(std::uint32_t value);
 
+  const CoreFeatures core_;
   Events& events_;
   Findings& findings_;
   Nvic& nvic_;
@@ -80,8 +98,11 @@ class SystemSpace {
   std::uint32_t cycle_count_ = 0;
 
   std::uint32_t mpu_control_ = 0, mpu_number_ = 0;
-  std::array<MpuRegion, 8> mpu_ = {};
+  std::array<MpuRegion, 16> mpu_ = {};
   bool mpu_changed_ = false;
+  bool trace_unlocked_ = false;
+  unsigned cleared_lines_ = 0;  ///< Of the data cache, since it was last off.
+  bool code_cleared_ = false;
 
   std::uint32_t systick_control_ = 0, systick_reload_ = 0, systick_stopped_at_ = 0;
   bool systick_counted_ = false;

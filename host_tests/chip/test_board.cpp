@@ -33,11 +33,12 @@ TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
   board->chip.set_unique_id({0x00112233, 0x44556677, 0x8899AABB});
   boot();
   const std::string name = ask("*IDN?");
-  EXPECT_EQ(name.find("emax,nucleo_g474re,00112233445566778899AABB,"), 0U) << name;
+  EXPECT_EQ(name.find(std::string("emax,") + Tested::kName + ",00112233445566778899AABB,"), 0U)
+      << name;
   EXPECT_EQ(ask("*TST?"), "0");
   EXPECT_EQ(error(), 0);
   EXPECT_EQ(led_changes(4.5), 4U);  // A flash every two seconds.
-  EXPECT_EQ(board->chip.clocks.hclk_hz, 170'000'000U);
+  EXPECT_EQ(board->chip.clocks.cpu_hz, Tested::kCpu_hz);
   EXPECT_EQ(board->chip.findings.text(), "");
 }
 
@@ -74,14 +75,14 @@ TEST_F(RealImage, ASweepRecoversTheTruthWithinItsUncertainty) {
 
 struct SweepFault {
   const char* name;
-  void (*strike)(Stm32g474&);
+  void (*strike)(Tested::Chip&);
   const char* told;  ///< What the error says.
 };
 
-void lose_a_block(Stm32g474& chip) { chip.requests.lose(kAdc1Request, 64); }
-void stop_the_converters(Stm32g474& chip) { chip.adc.set_dead(true); }
-void fail_the_response(Stm32g474& chip) { chip.dma1.fail_next(0), chip.dma2.fail_next(0); }
-void fail_the_drive(Stm32g474& chip) { chip.dma1.fail_next(1), chip.dma2.fail_next(1); }
+void lose_a_block(Tested::Chip& chip) { chip.requests.lose(chip.adc.dma_request(), 64); }
+void stop_the_converters(Tested::Chip& chip) { chip.adc.set_dead(true); }
+void fail_the_response(Tested::Chip& chip) { chip.dma1.fail_next(0), chip.dma2.fail_next(0); }
+void fail_the_drive(Tested::Chip& chip) { chip.dma1.fail_next(1), chip.dma2.fail_next(1); }
 
 class FaultOfTheSweep : public RealImage, public testing::WithParamInterface<SweepFault> {};
 
@@ -141,13 +142,6 @@ TEST_F(RealImage, ACrystalThatStopsEndsTheSweepWithTheDriveAtZero) {
   EXPECT_EQ(error(), -240);
 }
 
-struct HeldFlag {
-  const char* block;
-  const char* register_name;
-  std::uint32_t bits;
-  std::uint32_t value;
-};
-
 class FlagThatNeverComes : public RealImage, public testing::WithParamInterface<HeldFlag> {};
 
 // Whatever does not come, the console answers in the end, and the drive rests.
@@ -182,19 +176,11 @@ TEST_F(RealImage, AWatchdogThatDoesNotTakeItsSettingsIsToldAndNothingIsDriven) {
   EXPECT_EQ(board->chip.findings.text(), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Chip, FlagThatNeverComes,
-    testing::Values(HeldFlag{"RCC", "CR", 1U << 17, 0}, HeldFlag{"RCC", "CR", 1U << 25, 0},
-                    HeldFlag{"RCC", "CFGR", 0xC, 4}, HeldFlag{"FLASH", "ACR", 0xF, 0},
-                    HeldFlag{"FLASH", "SR", 1U << 16, 1U << 16},
-                    HeldFlag{"ADC1", "CR", 1U << 31, 1U << 31},
-                    HeldFlag{"ADC2", "CR", 1U << 31, 1U << 31}, HeldFlag{"ADC1", "ISR", 1, 0},
-                    HeldFlag{"ADC2", "ISR", 1, 0}, HeldFlag{"ADC1", "CR", 1U << 2, 1U << 2},
-                    HeldFlag{"DAC1", "SR", 1U << 11, 0}, HeldFlag{"DMA1", "ISR", 0xFF, 0}),
-    [](const auto& flag) {
-      return std::string(flag.param.block) + "_" + flag.param.register_name + "_" +
-             std::to_string(flag.param.bits);
-    });
+INSTANTIATE_TEST_SUITE_P(Chip, FlagThatNeverComes, testing::ValuesIn(Tested::flags()),
+                         [](const auto& flag) {
+                           return std::string(flag.param.block) + "_" + flag.param.register_name +
+                                  "_" + std::to_string(flag.param.bits);
+                         });
 
 /// Every so many operations of a save, beginning with one of them, so that tests share the work.
 class PowerCutAt : public RealImage, public testing::WithParamInterface<unsigned> {};
@@ -260,7 +246,7 @@ class SerialLine {
   const std::string& name() const { return name_; }
 
   /// Hands over what both sides have sent.
-  void carry(Lpuart& console) const {
+  void carry(Uart& console) const {
     char bytes[256];
     const ssize_t count = read(board_, bytes, sizeof bytes);
     if (count > 0) {
@@ -322,12 +308,12 @@ TEST_F(RealImage, MeasuresForTheReportOfThePc) {
 // converter of 12 bits has steps of 0.8 mV, and half of the drive limit is some 0.8 V.
 TEST_F(RealImage, ALoopbackFindsAWireAndItsLatency) {
   Wire wire;
-  board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, wire);
+  put_on_bench(wire);
   boot();
   ASSERT_TRUE(answers(1.0));
   const std::vector<double> found = numbers(ask("DIAG:LOOP?", 30.0));
   ASSERT_EQ(found.size(), 11U) << ask("SYST:ERR:ALL?");
-  EXPECT_NEAR(found[0], 513.0, 0.05) << "frames, as the stream states";
+  EXPECT_NEAR(found[0], Tested::kLatencyFrames, 0.05) << "frames, as the stream states";
   EXPECT_NEAR(found[3], 1.0, 5e-3);
   EXPECT_NEAR(found[4], 1.0, 5e-3);
   EXPECT_NEAR(found[5], 1.0, 1e-4) << "both inputs see the same";
@@ -364,11 +350,11 @@ TEST_F(RealImage, NoiseAndFramingErrorsAreSurvived) {
 
 TEST_F(RealImage, AnOverrunIsSurvived) {
   boot();
-  board->chip.processor().nvic().enable(interrupt(91), false);
+  board->chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), false);
   board->chip.console.send("*IDN?*IDN?*IDN?");
   board->chip.run_for(0.01);
   EXPECT_GT(board->chip.console.lost(), 0U);
-  board->chip.processor().nvic().enable(interrupt(91), true);
+  board->chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), true);
   board->chip.run_for(0.01);
   ask("", 0.1);
   ask("*CLS;*OPC?", 0.5);
@@ -438,7 +424,7 @@ TEST_F(Hang, WithoutInterruptsIsEndedByTheOtherWatchdog) {
   start_sweep();
   put_in("Watchdog4kick", {0xB672, 0xE7FE});  // cpsid i
   EXPECT_TRUE(is_reset(30.0));
-  EXPECT_EQ(board->chip.rcc.bus_read(0x94, 4) & kWatchdogReset, kWatchdogReset);
+  EXPECT_TRUE(board->chip.was_reset_by_watchdog());
   EXPECT_TRUE(answers(1.0));
   EXPECT_EQ(error(), -310);
   EXPECT_LE(driving_v(), kCode_v);

@@ -7,6 +7,9 @@
 namespace emax::chip {
 namespace {
 
+/// Causes of a reset in RCC_CSR: brown-out and pin; pin; watchdog and pin.
+constexpr std::uint32_t kPowerOn = 0x0C000000, kPin = 0x04000000, kWatchdog = 0x24000000;
+
 class Boot : public testing::Test {
  protected:
   Boot() : board(EMAX_CHIP_IMAGES "/boot.elf", wire) {}
@@ -87,12 +90,12 @@ TEST_F(Boot, ACrystalThatStopsIsFoundUnlessSomebodyWatches) {
 
 TEST_F(Boot, ResetsAreToldApart) {
   board.chip.power_on();
-  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPowerOnReset);
+  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPowerOn);
   board.chip.reset_pin();
-  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPowerOnReset | kPinReset);
+  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPowerOn | kPin);
   board.chip.rcc.bus_write(0x94, 4, 1U << 23);
   board.chip.reset_pin();
-  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPinReset);
+  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4), kPin);
 }
 
 TEST_F(Boot, TheWatchdogBitesAfterItsPeriodAndIsRemembered) {
@@ -108,7 +111,7 @@ TEST_F(Boot, TheWatchdogBitesAfterItsPeriodAndIsRemembered) {
   const double kicked_s = board.chip.now_s();
   EXPECT_TRUE(board.chip.run_until([&] { return board.chip.resets() == 2; }, 2.0));
   EXPECT_NEAR(board.chip.now_s() - kicked_s, 1.0, 2e-4);
-  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4) & kWatchdogReset, kWatchdogReset);
+  EXPECT_EQ(board.chip.rcc.bus_read(0x94, 4) & kWatchdog, kWatchdog);
   EXPECT_EQ(board.chip.findings.text(), "");
 }
 

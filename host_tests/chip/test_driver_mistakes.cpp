@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "chip/virtual_board.hpp"
+#include "chip/tested_board.hpp"
 
 namespace emax::chip {
 namespace {
@@ -61,11 +61,11 @@ std::pair<int, std::string> build(const fs::path& patch, const fs::path& image) 
                    image.string() + "'");
 }
 
-void overrun(Stm32g474& chip) {
-  chip.processor().nvic().enable(interrupt(91), false);
+void overrun(Tested::Chip& chip) {
+  chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), false);
   chip.console.send("*IDN?*IDN?*IDN?");
   chip.run_for(0.01);
-  chip.processor().nvic().enable(interrupt(91), true);
+  chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), true);
 }
 
 /// Boots and does what shows the mistake, until the finding is there.
@@ -73,7 +73,8 @@ std::string findings_of(const fs::path& image, const Mistake& mistake) {
   static const std::map<std::string, std::string> kCommands = {
       {"boot", "*IDN?\n"}, {"overrun", ""}, {"save", "*SAV 1\n"}, {"sweep", "INIT\n"}};
   Wire wire;
-  VirtualBoard board(image.string(), wire);
+  TestedBoard board(image.string(), wire);
+  Tested::prepare(board.chip);
   const auto found = [&] { return board.chip.findings.has(mistake.finding); };
   board.chip.power_on();
   if (!board.chip.run_until(found, 0.02)) {
@@ -90,7 +91,8 @@ class DriverMistakes : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (!fs::exists(EMAX_CHIP_IMAGE)) {
-      GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset nucleo-g474re";
+      GTEST_SKIP() << "no " EMAX_CHIP_IMAGE "; build it: cmake --workflow --preset "
+                   << Tested::kPreset;
     }
   }
 };
@@ -139,7 +141,7 @@ TEST(DriverMistakePatch, IsListedInTheReadme) {
     rows += "| `" + std::string(name) + "` | `" + fs::path(mistake.source).filename().string() +
             "` | " + mistake.words + " | `" + mistake.finding + "` |\n";
   }
-  EXPECT_GE(std::size(kPatches), 25U);
+  EXPECT_GE(std::size(kPatches), Tested::kLeastMistakes);
   EXPECT_NE(text_of(kFolder.parent_path() / "README.md").find("\n" + rows + "\n"),
             std::string::npos)
       << "the table in host_tests/chip/README.md should have these rows:\n"

@@ -68,7 +68,7 @@ TEST_F(StreamTest, TheDrivePinRestsInTheMiddleUntilTheFirstFrame) {
 TEST_F(StreamTest, LostRequestsShiftTheRing) {
   start();
   board.chip.run_for(0.01);
-  board.chip.requests.lose(kAdc1Request, 64);
+  board.chip.requests.lose(board.chip.adc.dma_request(), 64);
   board.chip.run_for(0.01);
   EXPECT_NEAR(response(65) & 0xFFFF, 16.0 * (1024.0 + 7.0 * 128), 1.0);
 }

@@ -90,7 +90,7 @@ class Loopback : public RealImage {
   void SetUp() override {
     RealImage::SetUp();
     if (!IsSkipped()) {
-      board = std::make_unique<VirtualBoard>(EMAX_CHIP_IMAGE, wire);
+      put_on_bench(wire);
     }
   }
   NoisyWire wire;

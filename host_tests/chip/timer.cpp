@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "chip/stm32g474_registers.hpp"
-
 namespace emax::chip {
 namespace {
 
@@ -21,9 +19,8 @@ constexpr unsigned kUpdateAsTrigger = 2;
 }  // namespace
 
 Timer::Timer(Context context, Clocks& clocks, const std::string& name, Kind kind,
-             unsigned interrupt_line)
-    : RegisterBlock(context, name,
-                    kind == Kind::kBasic ? basic_timer_registers() : general_timer_registers()),
+             Registers registers, unsigned interrupt_line)
+    : RegisterBlock(context, name, std::move(registers)),
       clocks_(clocks),
       kind_(kind),
       line_(interrupt(interrupt_line)) {

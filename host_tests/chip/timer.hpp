@@ -14,7 +14,7 @@ class Timer final : public RegisterBlock {
  public:
   enum class Kind { kBasic, kGeneral };
 
-  Timer(Context context, Clocks& clocks, const std::string& name, Kind kind,
+  Timer(Context context, Clocks& clocks, const std::string& name, Kind kind, Registers registers,
         unsigned interrupt_line);
 
   /// What hears of each update that goes out as a trigger (CR2.MMS = 2).

@@ -1,4 +1,4 @@
-// A NUCLEO-G474RE on the desk of a test: load an image, switch on, talk to it, look at what it did.
+// A board on the desk of a test: load an image, switch on, talk to it, look at what it did.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 #include "chip/analog_side.hpp"
 #include "chip/elf.hpp"
 #include "chip/stm32g474.hpp"
+#include "chip/stm32h743.hpp"
 
 namespace emax::chip {
 
@@ -14,10 +15,11 @@ namespace emax::chip {
 ///     board.chip.power_on();
 ///     EXPECT_EQ(board.ask("*IDN?", 1.0), "...");
 ///     EXPECT_EQ(board.chip.findings.text(), "");
-class VirtualBoard {
+template <typename Chip>
+class VirtualBoardOf {
  public:
-  VirtualBoard(const std::string& image_path, BenchInVolts& bench,
-               const FrontEnd& front_end = FrontEnd{})
+  VirtualBoardOf(const std::string& image_path, BenchInVolts& bench,
+                 const FrontEnd& front_end = FrontEnd{})
       : analog(bench, front_end), chip(analog) {
     chip.load(read_elf(image_path));
   }
@@ -37,7 +39,12 @@ class VirtualBoard {
   }
 
   AnalogSide analog;
-  Stm32g474 chip;
+  Chip chip;
 };
+
+/// A NUCLEO-G474RE.
+using VirtualBoard = VirtualBoardOf<Stm32g474>;
+/// A NUCLEO-H743ZI2.
+using VirtualH743 = VirtualBoardOf<Stm32h743>;
 
 }  // namespace emax::chip

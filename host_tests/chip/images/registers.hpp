@@ -1,16 +1,9 @@
-// The registers that the test images use, and the shortest right way to use them.
+// The registers that the test images of the STM32G474 use, and the shortest right way to use them.
 #pragma once
 
-#include <cstdint>
+#include "chip/images/access.hpp"
 
 namespace image {
-
-using Word = std::uint32_t;
-
-inline volatile Word& reg(Word address) { return *reinterpret_cast<volatile Word*>(address); }
-inline volatile std::uint16_t& half(Word address) {
-  return *reinterpret_cast<volatile std::uint16_t*>(address);
-}
 
 constexpr Word kRcc = 0x40021000, kPwr = 0x40007000, kFlash = 0x40022000, kGpioA = 0x48000000;
 constexpr Word kTim2 = 0x40000000, kTim6 = 0x40001000, kTim7 = 0x40001400, kIwdg = 0x40003000;
@@ -18,35 +11,6 @@ constexpr Word kLpuart = 0x40008000, kDma1 = 0x40020000, kDmamux = 0x40020800;
 constexpr Word kAdc1 = 0x50000000, kAdc2 = 0x50000100, kAdc12 = 0x50000300, kDac = 0x50000800;
 constexpr Word kRccCr = kRcc + 0x00, kRccCfgr = kRcc + 0x08, kRccPllcfgr = kRcc + 0x0C;
 constexpr Word kAhb1 = kRcc + 0x48, kAhb2 = kRcc + 0x4C, kApb1 = kRcc + 0x58, kApb1b = kRcc + 0x5C;
-
-constexpr unsigned kTries = 1000000;
-
-/// Waits until these bits are as wanted. @returns False when that takes too long.
-inline bool wait(Word address, Word bits, Word wanted) {
-  for (unsigned i = 0; i < kTries; ++i) {
-    if ((reg(address) & bits) == wanted) {
-      return true;
-    }
-  }
-  return false;
-}
-
-inline void delay(unsigned turns) {
-  for (unsigned i = 0; i < turns; ++i) {
-    asm volatile("nop");
-  }
-}
-
-/// Lets a peripheral's clock on, and waits until it has come.
-inline void clock_on(Word address, Word bits) {
-  reg(address) = reg(address) | bits;
-  const Word read_back = reg(address);
-  static_cast<void>(read_back);
-}
-
-inline void interrupt_on(unsigned number) {
-  reg(0xE000E100 + 4 * (number / 32)) = 1U << number % 32;
-}
 
 /// From HSI to 170 MHz by the crystal.
 inline bool clock_170() {

@@ -1,5 +1,5 @@
 // Vectors and start of the test images; an image defines the handlers that it has.
-#include "chip/images/registers.hpp"
+#include "chip/images/access.hpp"
 
 extern "C" {
 extern image::Word stack_top[], data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
@@ -8,12 +8,14 @@ void start();
 void on_fault();
 [[gnu::weak]] void on_nmi() { on_fault(); }
 [[gnu::weak]] void on_mem_manage() { on_fault(); }
+[[gnu::weak]] void on_bus_fault() { on_fault(); }
 [[gnu::weak]] void on_systick() { on_fault(); }
 [[gnu::weak]] void on_dma() { on_fault(); }
 [[gnu::weak]] void on_tim6() { on_fault(); }
 [[gnu::weak]] void on_tim7() { on_fault(); }
 [[gnu::weak]] void on_tim2() { on_fault(); }
 [[gnu::weak]] void on_lpuart() { on_fault(); }
+[[gnu::weak]] void on_usart3() { on_fault(); }
 
 [[gnu::naked]] void start() {
   asm volatile(
@@ -53,7 +55,7 @@ struct Vectors {
   image::Word* stack;
   Handler start;
   Handler exceptions[14];
-  Handler interrupts[102];
+  Handler interrupts[150];  // As many as the greater chip has.
 };
 
 constexpr Vectors table() {
@@ -68,9 +70,11 @@ constexpr Vectors table() {
   }
   vectors.exceptions[0] = on_nmi;
   vectors.exceptions[2] = on_mem_manage;
+  vectors.exceptions[3] = on_bus_fault;
   vectors.exceptions[13] = on_systick;
   vectors.interrupts[11] = on_dma;
   vectors.interrupts[28] = on_tim2;
+  vectors.interrupts[39] = on_usart3;
   vectors.interrupts[54] = on_tim6;
   vectors.interrupts[55] = on_tim7;
   vectors.interrupts[91] = on_lpuart;

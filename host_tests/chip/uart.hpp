@@ -1,8 +1,9 @@
-// LPUART1 with its FIFOs, and the line at its pins.
+// A UART with its FIFOs, and the line at its pins.
 #pragma once
 
 #include <deque>
 #include <string>
+#include <utility>
 
 #include "chip/clocks.hpp"
 #include "chip/gpio.hpp"
@@ -15,9 +16,23 @@ enum class LineFault { kNone, kNoise, kFraming, kParity };
 
 /// Found here: "uart_setting_while_enabled", "uart_baud_rate", "uart_transmitter_off",
 /// "uart_data_overwritten", "uart_pin_not_connected", "uart_no_clock".
-class Lpuart final : public RegisterBlock {
+class Uart final : public RegisterBlock {
  public:
-  Lpuart(Context context, Clocks& clocks, const Gpio& port);
+  /// What differs between the console's UARTs.
+  struct Kind {
+    const char* name;
+    unsigned rate_factor;  ///< The divider is the clock times this through the rate.
+    std::uint32_t least_divider;
+    std::size_t fifo_depth;
+    unsigned tx_pin, rx_pin, function;
+    unsigned interrupt;
+  };
+
+  Uart(Context context, Clocks& clocks, const Gpio& port, const Kind& kind, Registers registers)
+      : RegisterBlock(context, kind.name, std::move(registers)),
+        kind_(kind),
+        clocks_(clocks),
+        port_(port) {}
 
   /// What has gone out since the last call of `take_sent()`.
   const std::string& sent() const { return sent_; }
@@ -38,7 +53,7 @@ class Lpuart final : public RegisterBlock {
 
   bool enabled() const { return has(0x00, 1); }
   bool fifo() const { return has(0x00, 1U << 29); }
-  std::size_t depth() const { return fifo() ? 8 : 1; }
+  std::size_t depth() const { return fifo() ? kind_.fifo_depth : 1; }
   double baud() const;
   void check_baud() const;
   void write_control(std::uint32_t value);
@@ -49,6 +64,7 @@ class Lpuart final : public RegisterBlock {
   void arm_line();
   void refresh();
 
+  Kind kind_;
   Clocks& clocks_;
   const Gpio& port_;
   std::string sent_;

@@ -1,9 +1,7 @@
-#include "chip/lpuart.hpp"
+#include "chip/uart.hpp"
 
 #include <cmath>
 #include <utility>
-
-#include "chip/stm32g474_registers.hpp"
 
 namespace emax::chip {
 namespace {
@@ -15,18 +13,14 @@ constexpr std::uint32_t kParity = 1, kFraming = 2, kNoise = 4, kOverrun = 8, kId
 constexpr std::uint32_t kReceived = 1U << 5, kComplete = 1U << 6, kEmpty = 1U << 7;
 constexpr std::uint32_t kTransmitReady = 1U << 21, kReceiveReady = 1U << 22;
 constexpr std::uint32_t kAllEmpty = 1U << 23, kFull = 1U << 24;
-constexpr unsigned kTxPin = 2, kRxPin = 3, kFunction = 12;
-constexpr unsigned kBits = 10;  // Start, eight, stop.
-constexpr unsigned kInterrupt = 91;
+constexpr std::uint32_t kHalfSampling = 1U << 15;  // OVER8, which an LPUART has not.
+constexpr unsigned kBits = 10;                     // Start, eight, stop.
 /// Of the rate; a receiver samples in the middle of the tenth bit.
 constexpr double kBaudTolerance = 0.02;
 
 }  // namespace
 
-Lpuart::Lpuart(Context context, Clocks& clocks, const Gpio& port)
-    : RegisterBlock(context, "LPUART1", lpuart_registers()), clocks_(clocks), port_(port) {}
-
-void Lpuart::on_reset() {
+void Uart::on_reset() {
   received_.clear();
   waiting_.clear();
   shifting_ = false;
@@ -34,9 +28,9 @@ void Lpuart::on_reset() {
   refresh();
 }
 
-std::string Lpuart::take_sent() { return std::exchange(sent_, {}); }
+std::string Uart::take_sent() { return std::exchange(sent_, {}); }
 
-void Lpuart::send(const std::string& text) {
+void Uart::send(const std::string& text) {
   const bool was_idle = line_.empty();
   line_.insert(line_.end(), text.begin(), text.end());
   if (was_idle) {
@@ -45,14 +39,14 @@ void Lpuart::send(const std::string& text) {
 }
 
 // Also after a reset of the chip, which the line knows nothing of.
-void Lpuart::arm_line() {
+void Uart::arm_line() {
   context_.events.cancel(std::exchange(line_event_, 0));
   if (!line_.empty()) {
     line_event_ = context_.events.after(cycles_of(kBits, line_baud), [this] { receive(); });
   }
 }
 
-void Lpuart::receive() {
+void Uart::receive() {
   const std::uint8_t character = line_.front();
   line_.pop_front();
   line_event_ = 0;
@@ -61,8 +55,9 @@ void Lpuart::receive() {
     ++lost_;
     return;
   }
-  if (port_.mode(kRxPin) != PinMode::kAlternate || port_.alternate(kRxPin) != kFunction) {
-    report("uart_pin_not_connected", kRdr, kRxPin);
+  if (port_.mode(kind_.rx_pin) != PinMode::kAlternate ||
+      port_.alternate(kind_.rx_pin) != kind_.function) {
+    report("uart_pin_not_connected", kRdr, kind_.rx_pin);
     ++lost_;
     return;
   }
@@ -70,7 +65,7 @@ void Lpuart::receive() {
   accept(character);
 }
 
-void Lpuart::accept(std::uint8_t character) {
+void Uart::accept(std::uint8_t character) {
   const std::uint32_t flags[] = {0, kNoise, kFraming, kParity};
   const std::uint32_t fault = flags[static_cast<unsigned>(std::exchange(fault_, LineFault::kNone))];
   if (received_.size() >= depth()) {
@@ -90,23 +85,23 @@ void Lpuart::accept(std::uint8_t character) {
   refresh();
 }
 
-double Lpuart::baud() const {
+double Uart::baud() const {
   constexpr unsigned kDividers[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256};
   const unsigned code = stored(kPresc);
   const unsigned divider = kDividers[code < 12 ? code : 11];
   const std::uint32_t rate = stored(kBrr);
-  return rate == 0 ? 0.0 : 256.0 * clocks_.lpuart_hz / divider / rate;
+  return rate == 0 ? 0.0 : 1.0 * kind_.rate_factor * clocks_.uart_hz / divider / rate;
 }
 
-void Lpuart::check_baud() const {
+void Uart::check_baud() const {
   const double wrong = baud() / line_baud - 1.0;
-  if (!(std::fabs(wrong) <= kBaudTolerance) || stored(kBrr) < 0x300) {
-    report(clocks_.lpuart_hz == 0 ? "uart_no_clock" : "uart_baud_rate", kBrr,
+  if (!(std::fabs(wrong) <= kBaudTolerance) || stored(kBrr) < kind_.least_divider) {
+    report(clocks_.uart_hz == 0 ? "uart_no_clock" : "uart_baud_rate", kBrr,
            static_cast<std::uint32_t>(baud()));
   }
 }
 
-std::uint32_t Lpuart::on_read(std::uint32_t offset, std::uint32_t value) {
+std::uint32_t Uart::on_read(std::uint32_t offset, std::uint32_t value) {
   if (offset != kRdr || received_.empty()) {
     return value;
   }
@@ -119,13 +114,13 @@ std::uint32_t Lpuart::on_read(std::uint32_t offset, std::uint32_t value) {
 }
 
 // The flags of faults are those of the character that would be read next; they stay.
-void Lpuart::show_faults() {
+void Uart::show_faults() {
   if (!received_.empty()) {
     set_bits(kIsr, static_cast<std::uint32_t>(received_.front()) >> 8);
   }
 }
 
-void Lpuart::on_write(std::uint32_t offset, std::uint32_t value) {
+void Uart::on_write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case kCr1:
       write_control(value);
@@ -171,13 +166,13 @@ void Lpuart::on_write(std::uint32_t offset, std::uint32_t value) {
   refresh();
 }
 
-void Lpuart::write_control(std::uint32_t value) {
+void Uart::write_control(std::uint32_t value) {
   constexpr std::uint32_t kFixed = 0x30001600;  // FIFO, lengths, parity.
   if (enabled() && (value & 1) != 0 && ((stored(kCr1) ^ value) & kFixed) != 0) {
     report("uart_setting_while_enabled", kCr1, value);
     value = (value & ~kFixed) | (stored(kCr1) & kFixed);
   }
-  if ((value & kFixed & ~(1U << 29)) != 0) {
+  if ((value & (kFixed | kHalfSampling) & ~(1U << 29)) != 0) {
     report("not_modelled", kCr1, value);
   }
   const bool starts = !enabled() && (value & 1) != 0;
@@ -193,7 +188,7 @@ void Lpuart::write_control(std::uint32_t value) {
   transmit();
 }
 
-void Lpuart::transmit() {
+void Uart::transmit() {
   if (shifting_ || waiting_.empty() || !enabled() || baud() <= 0.0) {
     return;
   }
@@ -202,8 +197,9 @@ void Lpuart::transmit() {
   waiting_.pop_front();
   context_.events.after(ticks(kBits / baud()), [this, character] {
     shifting_ = false;
-    if (port_.mode(kTxPin) != PinMode::kAlternate || port_.alternate(kTxPin) != kFunction) {
-      report("uart_pin_not_connected", kTdr, kTxPin);
+    if (port_.mode(kind_.tx_pin) != PinMode::kAlternate ||
+        port_.alternate(kind_.tx_pin) != kind_.function) {
+      report("uart_pin_not_connected", kTdr, kind_.tx_pin);
     } else {
       check_baud();
       sent_.push_back(static_cast<char>(character));
@@ -216,7 +212,7 @@ void Lpuart::transmit() {
   });
 }
 
-void Lpuart::refresh() {
+void Uart::refresh() {
   constexpr std::uint32_t kComputed =
       kReceived | kEmpty | kAllEmpty | kFull | kTransmitReady | kReceiveReady;
   std::uint32_t flags = stored(kIsr) & ~kComputed;
@@ -237,7 +233,7 @@ void Lpuart::refresh() {
   line |= (control >> 30 & 1) != 0 && (seen & kAllEmpty) != 0;
   line |= (control >> 31 & 1) != 0 && (seen & kFull) != 0;
   line |= (control >> 8 & 1) != 0 && (seen & kParity) != 0;
-  context_.wires.set(interrupt(kInterrupt), this, line && enabled());
+  context_.wires.set(interrupt(kind_.interrupt), this, line && enabled());
 }
 
 }  // namespace emax::chip

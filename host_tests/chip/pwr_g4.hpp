@@ -6,9 +6,9 @@
 
 namespace emax::chip {
 
-class Pwr final : public RegisterBlock {
+class PwrG4 final : public RegisterBlock {
  public:
-  Pwr(Context context, Clocks& clocks);
+  PwrG4(Context context, Clocks& clocks);
 
  private:
   void on_write(std::uint32_t offset, std::uint32_t value) override;

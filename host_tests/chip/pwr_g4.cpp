@@ -1,4 +1,4 @@
-#include "chip/pwr.hpp"
+#include "chip/pwr_g4.hpp"
 
 #include "chip/stm32g474_registers.hpp"
 
@@ -11,18 +11,18 @@ const Time kRegulator = ticks(20e-6);
 
 }  // namespace
 
-Pwr::Pwr(Context context, Clocks& clocks)
-    : RegisterBlock(context, "PWR", pwr_registers()), clocks_(clocks) {}
+PwrG4::PwrG4(Context context, Clocks& clocks)
+    : RegisterBlock(context, "PWR", g474::pwr_registers()), clocks_(clocks) {}
 
-void Pwr::on_reset() { update(); }
+void PwrG4::on_reset() { update(); }
 
-void Pwr::update() {
+void PwrG4::update() {
   clocks_.voltage_range = field(stored(kCr1), 9, 2);
   clocks_.boost = !has(kCr5, 1U << 8);
   clocks_.check_speed();
 }
 
-void Pwr::on_write(std::uint32_t offset, std::uint32_t value) {
+void PwrG4::on_write(std::uint32_t offset, std::uint32_t value) {
   const std::uint32_t old = stored(offset);
   put(offset, masked(offset, value));
   if (offset != kCr1 && offset != kCr5) {
