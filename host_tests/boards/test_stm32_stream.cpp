@@ -240,6 +240,15 @@ TEST(StreamStart, EndsWhenTheCalibrationNeverDoes) {
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
 }
 
+TEST(StreamStart, CalibratesWithoutDmaAfterAStreamToo) {
+  Bench bench(StreamFault::kNone, 0);
+  for (int time = 0; time < 2; ++time) {
+    ASSERT_EQ(bench.stream().start({1000, 1000}), Status::kOk);
+    EXPECT_FALSE(bench.chip().calibrates_with_dma()) << time;
+    bench.stream().stop();
+  }
+}
+
 TEST(StreamStart, EndsWhenNoTriggerEverComes) {
   Bench bench(StreamFault::kNone, 0);
   bench.chip().stop_triggers();

@@ -54,6 +54,8 @@ class FakeConverters final : public FakeChip {
   void hold_regulator(bool held) { is_regulator_held_ = held; }
   /// What a result takes, as on a chip whose ADCs' clock is another one.
   void set_conversion_us(std::uint64_t us) { conversion_cycles_ = us * kCyclesPer_us; }
+  /// A calibration has begun while the converters asked for DMA, which spoils it.
+  bool calibrates_with_dma() const { return calibrates_with_dma_; }
   void set_underrun() { registers_[chip::kDac + 0x34] |= 1U << 13; }
   void set_overrun() { registers_[chip::kAdc2] |= 1U << 4; }
 
@@ -268,6 +270,8 @@ class FakeConverters final : public FakeChip {
       conversion_end_ = cycles_ + conversion_cycles_;
     }
     if ((value & 1U << 31) != 0) {
+      calibrates_with_dma_ |=
+          ((registers_[adc + 0x0C] & 3U) | (registers_[kCommonControl] & 3U << 14)) != 0;
       calibrated_at_ = cycles_ + (refuses_start() ? chip::kSlowCalibration_us * kCyclesPer_us : 0);
     }
     if ((value & 1U) != 0) {
@@ -288,6 +292,7 @@ class FakeConverters final : public FakeChip {
     return refuses;
   }
 
+  static constexpr std::uintptr_t kCommonControl = chip::kAdc1 + 0x308;
   std::unordered_map<std::uintptr_t, std::uint32_t> registers_;
   std::map<std::uintptr_t, std::uint32_t> sizes_;
   std::function<void()> handler_;
@@ -309,6 +314,7 @@ class FakeConverters final : public FakeChip {
   bool is_deaf_ = false;
   bool is_noisy_ = false;
   bool is_calibration_held_ = false;
+  bool calibrates_with_dma_ = false;
   bool is_regulator_held_ = false;
   std::uint64_t calibrated_at_ = 0;
   bool are_triggers_dead_ = false;

@@ -128,12 +128,13 @@ Status Stm32AdcPair::prepare() noexcept {
   }
   const std::uintptr_t adcs[] = {settings_->reference.adc, settings_->device.adc};
   // The clock first, as a calibration is that of its clock; and that alone, as it goes wrong with
-  // DMA on.
+  // DMA on: the stream before this one has left it so, in each converter's own settings, too.
   reg(settings_->common + kCommonControl) = settings_->clock;
   if (!power_up()) {
     return Status::kHardwareFault;
   }
   for (const std::uintptr_t adc : adcs) {
+    reg(adc + kConfiguration) = settings_->no_trigger;
     command(adc, settings_->calibrate);
     if (!is_cleared(adc, kCalibrate, settings_->most_calibration_us)) {
       return Status::kHardwareFault;
