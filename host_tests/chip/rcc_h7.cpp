@@ -73,7 +73,7 @@ void RccH7::set_hse_dead(bool dead) {
   }
   clear_bits(kCr, kHseReady);
   const bool feeds_pll = has(kCr, kPllOn) && field(stored(kPllckselr), 0, 2) == 2;
-  const unsigned used = field(stored(kCfgr), 3, 3);
+  const unsigned used = field(get(kCfgr), 3, 3);
   const bool in_use = used == 2 || (used == 3 && feeds_pll);
   if (!has(kCr, kSecurity)) {
     if (in_use) {
@@ -167,7 +167,7 @@ void RccH7::start(std::uint32_t on, std::uint32_t ready, Time delay) {
 }
 
 std::uint32_t RccH7::keep_what_is_used(std::uint32_t old, std::uint32_t next) {
-  const unsigned used = field(stored(kCfgr), 3, 3);
+  const unsigned used = field(get(kCfgr), 3, 3);
   const unsigned source = field(stored(kPllckselr), 0, 2);
   const bool pll = (old & kPllOn) != 0;
   const auto in_use = [&](unsigned number) {
@@ -300,7 +300,8 @@ void RccH7::write_configuration(std::uint32_t value) {
 }
 
 void RccH7::update() {
-  const std::uint32_t running_hz = source_hz(field(stored(kCfgr), 3, 3));
+  // What the status says it runs from, also while a test holds that.
+  const std::uint32_t running_hz = source_hz(field(get(kCfgr), 3, 3));
   const std::uint32_t d1 = stored(kD1cfgr), d2 = stored(kD2cfgr);
   clocks_.sysclk_hz = running_hz != 0 ? running_hz : kHsi_hz;
   clocks_.cpu_hz = clocks_.sysclk_hz / ahb_divider(field(d1, 8, 4));
