@@ -351,7 +351,7 @@ TEST_F(RealImage, NoiseAndFramingErrorsAreSurvived) {
 TEST_F(RealImage, AnOverrunIsSurvived) {
   boot();
   board->chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), false);
-  board->chip.console.send("*IDN?*IDN?*IDN?");
+  board->chip.console.send("*IDN?*IDN?*IDN?*IDN?");  // More than 16 bytes, the largest FIFO.
   board->chip.run_for(0.01);
   EXPECT_GT(board->chip.console.lost(), 0U);
   board->chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), true);
