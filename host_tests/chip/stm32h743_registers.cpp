@@ -1,6 +1,6 @@
 // The registers of the STM32H743 that a driver of this instrument may use: offset, value after
-// reset, bits that exist, bits that a program can set. From ST's CMSIS header (stm32h743xx.h) and
-// SVD file; the header is right where they differ: the SVD file describes an older revision.
+// reset, bits that exist, bits that a program can set. From ST's SVD file, which describes an older
+// revision, with corrections by hand; not yet compared with ST's CMSIS header (stm32h743xx.h).
 #include "chip/stm32h743_registers.hpp"
 
 namespace emax::chip::h743 {

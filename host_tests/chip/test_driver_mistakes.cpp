@@ -63,15 +63,16 @@ std::pair<int, std::string> build(const fs::path& patch, const fs::path& image) 
 
 void overrun(Tested::Chip& chip) {
   chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), false);
-  chip.console.send("*IDN?*IDN?*IDN?");
+  chip.console.send("*IDN?*IDN?*IDN?*IDN?");  // More than 16 bytes, the largest FIFO.
   chip.run_for(0.01);
   chip.processor().nvic().enable(interrupt(Tested::kConsoleInterrupt), true);
 }
 
 /// Boots and does what shows the mistake, until the finding is there.
 std::string findings_of(const fs::path& image, const Mistake& mistake) {
+  // A sweep comes after a self test, so that the converters start a second time.
   static const std::map<std::string, std::string> kCommands = {
-      {"boot", "*IDN?\n"}, {"overrun", ""}, {"save", "*SAV 1\n"}, {"sweep", "INIT\n"}};
+      {"boot", "*IDN?\n"}, {"overrun", ""}, {"save", "*SAV 1\n"}, {"sweep", "*TST?\nINIT\n"}};
   Wire wire;
   TestedBoard board(image.string(), wire);
   Tested::prepare(board.chip);
