@@ -28,7 +28,9 @@ struct NucleoG474re {
   /// At 50 kS/s the images of a drive of 5 kHz begin at 45 kHz: a filter for 100 kS/s would let
   /// 1e-3 of it through to the reference.
   static constexpr double kReconstruction_hz = 12500.0;
+  static constexpr const char* kCountsTable = "board counts";
   static void prepare(Chip&) {}
+  static void prepare_to_count(Chip&) {}
   static bool led(const Chip& chip) { return chip.ports[0]->output(5); }
   static std::vector<HeldFlag> flags() {
     return {{"RCC", "CR", 1U << 17, 0},
@@ -55,10 +57,16 @@ struct NucleoH743zi2 {
   static constexpr unsigned kLeastMistakes = 15;
   static constexpr double kLatencyFrames = 513.0;
   static constexpr double kReconstruction_hz = 25000.0;  // At 100 kS/s.
+  static constexpr const char* kCountsTable = "board counts of the other board";
   /// What takes long is polled for, and costs a test real time: sectors, and linear calibration.
   static void prepare(Chip& chip) {
     chip.flash.set_erase_time(2e-3);
     chip.adc.family().linear_cycles = 5000;
+  }
+  /// With the times of the chip.
+  static void prepare_to_count(Chip& chip) {
+    chip.flash.set_erase_time(1.0);
+    chip.adc.family().linear_cycles = 165'010;
   }
   static bool led(const Chip& chip) { return chip.ports[1]->output(0); }
   static std::vector<HeldFlag> flags() {
