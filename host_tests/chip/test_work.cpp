@@ -195,7 +195,13 @@ std::string grouped(std::uint64_t number) {
 std::string time_of(double time_us) {
   std::ostringstream text;
   text.precision(3);
-  time_us < 1000.0 ? text << time_us << " µs" : text << time_us / 1000.0 << " ms";
+  if (time_us < 1e3) {
+    text << time_us << " µs";
+  } else if (time_us < 1e6) {
+    text << time_us / 1e3 << " ms";
+  } else {
+    text << time_us / 1e6 << " s";
+  }
   return text.str();
 }
 
@@ -268,8 +274,8 @@ TEST_F(Counts, AreThoseOfTheTable) {
   ask("SENS:REF:SENS 1.02;GAIN 1;:SENS:DEV:GAIN 1;:SOUR:LEV 1;:SENS:SWE:FREQ 500,1000,2000;*OPC?");
   count_sweep();
   EXPECT_EQ(error(), 0);
-  for (const char* const command :
-       {"*IDN?", "SYST:ERR?", "SENS:SWE:FREQ?", "FETC:FRES?", "*TST?", "*SAV 1"}) {
+  for (const char* const command : {"*IDN?", "SYST:ERR?", "SENS:SWE:FREQ?", "FETC:FRES?", "*TST?",
+                                    "*SAV 1", "CALC:MOD 1.037,4073,0.3182;:CALC:ENER?"}) {
     add("`" + std::string(command) + "`", static_cast<double>(of(command)));
   }
   const std::uint64_t before = board->chip.processor().instructions();
