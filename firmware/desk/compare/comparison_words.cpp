@@ -390,8 +390,8 @@ std::string words_on_one_side(const Comparison& comparison) {
   if (!any) {
     return "";
   }
-  return std::string(" A figure without U is at one end of its interval, which decides in the ") +
-         "place of U." +
+  return std::string(" Where there is no U, U says too little: it is above the figure, or the ") +
+         "interval reaches farther to one side. The interval decides there." +
          (comparison.by == FigureKind::kMatched
               ? " The delay taken out stays that of the estimate: what the sensor's own differs by "
                 "counts as error."

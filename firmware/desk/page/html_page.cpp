@@ -110,6 +110,7 @@ class EnergyFormat {
 
 // A percentage with its expanded uncertainty; four digits without one.
 std::string percentage(double percent, double expanded) {
+  constexpr int kMostPlain = 9;  // Decimals: as in the report.
   const bool has_u = expanded > 0.0 && std::isfinite(expanded);
   return words_of([&](TextWriter& out) {
     if (!has_u) {
@@ -121,7 +122,11 @@ std::string percentage(double percent, double expanded) {
     const double least = std::min(expanded, percent > 0.0 ? percent : expanded);
     const int decimals =
         std::clamp(1 - static_cast<int>(std::floor(std::log10(least))), 0, kMostDecimals);
-    out.fixed(percent, decimals).text(" % +- ").fixed(expanded, decimals).text(" %");
+    if (decimals > kMostPlain) {
+      out.general(percent, 4).text(" % +- ").general(expanded, 2).text(" %");
+    } else {
+      out.fixed(percent, decimals).text(" % +- ").fixed(expanded, decimals).text(" %");
+    }
   });
 }
 

@@ -15,10 +15,10 @@ namespace {
 using app::Warning;
 
 constexpr Warning kMarking[] = {
-    Warning::kFit,       Warning::kOpenDamping,   Warning::kDisagreement, Warning::kLowFrequency,
-    Warning::kShortTime, Warning::kShortInBand,   Warning::kGuard,        Warning::kCrowded,
-    Warning::kRedrawn,   Warning::kNoUncertainty, Warning::kMeasurement,  Warning::kEnded,
-    Warning::kDataSheet, Warning::kChange};
+    Warning::kFit,         Warning::kOpenDamping, Warning::kDisagreement,  Warning::kLowFrequency,
+    Warning::kShortTime,   Warning::kShortInBand, Warning::kGuardInBand,   Warning::kGuard,
+    Warning::kCrowded,     Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
+    Warning::kMeasurement, Warning::kEnded,       Warning::kDataSheet,     Warning::kChange};
 
 std::string range_of(const app::EvaluationResults& results) {
   StringSink sink;

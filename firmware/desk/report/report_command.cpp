@@ -208,10 +208,11 @@ Problem keep_early_points(const Problem& fault, const std::vector<EarlyPoint>& p
   return kept;
 }
 
-// Two remarks in one line.
+// Two remarks in one line; the second may be of a fault.
 Problem both(const Problem& first, const Problem& second) {
   const bool is_single = first.line.empty() || second.line.empty();
-  return {ExitStatus::kDone, first.line + (is_single ? "" : "; ") + second.line};
+  const ExitStatus status = second.line.empty() ? first.status : second.status;
+  return {status, first.line + (is_single ? "" : "; ") + second.line};
 }
 
 // What the star at the figures means, and whose E it is.

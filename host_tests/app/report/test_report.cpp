@@ -268,14 +268,14 @@ TEST(Report, AnIntervalStandsInThePlaceOfUAtTheEndOfADistribution) {
   results.matched.uncertainty.shortest = {energy(0.0002), energy(0.0239)};
   std::string report = report_of(results);
   EXPECT_TRUE(
-      says(line_with(report, "In band, constant delay taken out"), "0.0001385    0 to 0.024 "));
-  EXPECT_TRUE(says(report, "+-U is no measure"));
+      says(line_with(report, "In band, constant delay taken out"), "0.0001385        0 to 0.024 "));
+  EXPECT_TRUE(says(report, "+-U says too little"));
   // As far below the figure as above it.
   results.matched.energy_v2s = energy(0.0120);
   results.matched.uncertainty.u_percent = 0.0059;
   report = report_of(results);
-  EXPECT_TRUE(says(line_with(report, "In band, constant delay taken out"), "0.012         0.012 "));
-  EXPECT_FALSE(says(report, "+-U is no measure"));
+  EXPECT_TRUE(says(line_with(report, "In band, constant delay taken out"), "0.012             0.012 "));
+  EXPECT_FALSE(says(report, "+-U says too little"));
 }
 
 TEST(Report, InBandNamesItsDelayAndWhatItsUncertaintyIsOf) {

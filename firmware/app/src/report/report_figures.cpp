@@ -11,10 +11,12 @@ constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
 constexpr std::size_t kTimesPerLine = 6;
-constexpr std::size_t kNameWidth = 44;
+constexpr std::size_t kNameWidth = 40;
 constexpr std::size_t kNumberWidth = 14;
-constexpr std::size_t kWidthOfRest = 6;  // " to 0."
+constexpr std::size_t kExpandedWidth = 18;  // Of U, or of an interval in its place.
+constexpr std::size_t kWidthOfRest = 6;     // " to 0."
 constexpr int kMostPlain = 9;
+constexpr double kHalf = 0.5;
 constexpr int kMostDecimals = 12;
 
 double power_of_ten(int exponent) noexcept {
@@ -45,9 +47,21 @@ int decimals_beside(double percent, double expanded) noexcept {
   return least > of_u && percent > 0.0 ? least : of_u;
 }
 
+/// As many decimals as leave the number no larger than its bound, if so many are needed.
+int decimals_below(double percent, int decimals, double bound_percent) noexcept {
+  constexpr int kDigits = 4;
+  const int most = decimals_of(bound_percent, kDigits);
+  while (decimals < most &&
+         rounded_down(percent + kHalf / power_of_ten(decimals), decimals) > bound_percent) {
+    ++decimals;
+  }
+  return decimals;
+}
+
 /// In so many decimals; a number so small that the column has no room for them has an exponent.
-void write_cell(double percent, int decimals, int digits, ReportWriter& out) noexcept {
-  out.cell(kNumberWidth);
+void write_cell(double percent, int decimals, int digits, ReportWriter& out,
+                std::size_t width = kNumberWidth) noexcept {
+  out.cell(width);
   if (percent == 0.0) {
     out.integer(0);
   } else if (decimals > kMostPlain) {
@@ -61,16 +75,16 @@ void write_cell(double percent, int decimals, int digits, ReportWriter& out) noe
 void write_expanded(const Row& row, int decimals, ReportWriter& out) noexcept {
   constexpr int kDigitsOfU = 2;
   if (!row.has_u) {
-    out.cell(kNumberWidth).text("-");
+    out.cell(kExpandedWidth).text("-");
   } else if (!row.is_one_sided) {
-    write_cell(row.expanded, decimals, kDigitsOfU, out);
+    write_cell(row.expanded, decimals, kDigitsOfU, out, kExpandedWidth);
   } else {
     // Outwards, both in the decimals of the far end.
     const int of_end = decimals_of(row.interval.high, kDigitsOfU);
     const double low = rounded_down(row.interval.low, of_end);
     const double high = rounded_up(row.interval.high, of_end);
     const std::size_t beside = kWidthOfRest + static_cast<std::size_t>(of_end);
-    out.cell(beside < kNumberWidth ? kNumberWidth - beside : 0);
+    out.cell(beside < kExpandedWidth ? kExpandedWidth - beside : 0);
     low > 0.0 ? out.fixed(low, of_end) : out.integer(0);
     out.text(" to ").fixed(high, of_end);
   }
@@ -80,8 +94,10 @@ void write_row(const Row& row, ReportWriter& out) noexcept {
   constexpr int kDigitsAlone = 4;
   constexpr double kHalfOfLastDigit = 5e-4;
   const bool has_digits = row.has_u && row.expanded > 0.0 && !row.is_one_sided;
-  const int decimals = has_digits ? decimals_beside(row.percent, row.expanded)
-                                  : decimals_of(row.percent, kDigitsAlone);
+  const int alone = decimals_of(row.percent, kDigitsAlone);
+  const int known = has_digits ? decimals_beside(row.percent, row.expanded) : alone;
+  const int decimals =
+      row.has_bound ? decimals_below(row.percent, known, row.bound_percent) : known;
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(kNameWidth - 2).text(row.name).text(row.is_marked ? " *" : "  ");
   write_cell(row.percent, decimals, kDigitsAlone, out);
@@ -280,7 +296,7 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   out.part(ReportPart::kHead);
   out.cell(0).text("  ").left(kNameWidth).text("error");
   out.cell(kNumberWidth).text("found");
-  out.cell(kNumberWidth).text("U (k = 2)");
+  out.cell(kExpandedWidth).text("U (k = 2)");
   out.cell(kNumberWidth).text("none exceeds").line();
   const bool is_one_sided = write_band_rows(results, marks, out);
   write_papers_rows(results, marks, out);
@@ -296,7 +312,7 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   if (is_one_sided) {
     out.text("  x to y: where the figure is with ");
     out.general(kPercent * results.settings.probability, 6);
-    out.text(" %. It is one-sided, so that +-U is no measure.\n");
+    out.text(" %, as +-U says too little.\n");
   }
   if (results.settings.criterion == Criterion::kIntegralSquareError) {
     out.text(
@@ -330,7 +346,7 @@ void write_short_time(double duration_s, const SettlingTime& settling, ReportWri
       .text(is_much ? "  WARNING: T is much shorter" : "  Note: T is shorter")
       .text(
           " than the settling time, so the error has not developed within\n"
-          "  T. The paper takes T from the settling time: give a T of ");
+          "  T: give a T of ");
   constexpr int kDigits = 3;
   const double least_ms = kMilli * settling.time_s;
   const int decimals = decimals_of(least_ms, kDigits);

@@ -47,6 +47,13 @@ bool are_rough(const EvaluationResults& results) noexcept {
   return any;
 }
 
+bool disagrees(const EnergyUncertainty& known) noexcept { return known.guard.disagreements > 0; }
+
+bool guards_disagree(const EvaluationResults& results) noexcept {
+  const bool of_trials = results.has_monte_carlo && results.guard.disagreements > 0;
+  return of_trials || disagrees(results.uncertainty);
+}
+
 bool has_flags(const ReportContext& context) noexcept {
   if (context.measurement == nullptr) {
     return false;
@@ -59,13 +66,6 @@ bool has_flags(const ReportContext& context) noexcept {
 }
 
 }  // namespace
-
-bool guards_disagree(const EvaluationResults& results) noexcept {
-  const std::uint32_t of_trials = results.has_monte_carlo ? results.guard.disagreements : 0;
-  return of_trials > 0 || results.uncertainty.guard.disagreements > 0 ||
-         results.band.uncertainty.guard.disagreements > 0 ||
-         results.matched.uncertainty.guard.disagreements > 0;
-}
 
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept {
@@ -90,6 +90,8 @@ bool holds(Warning warning, const EvaluationResults& results,
       return results.has_monte_carlo && results.settings.adaptive && !results.adaptive.stabilised;
     case Warning::kGuard:
       return guards_disagree(results);
+    case Warning::kGuardInBand:
+      return disagrees(results.band.uncertainty) || disagrees(results.matched.uncertainty);
     case Warning::kCrowded:
       return results.has_monte_carlo && results.trials.branches.is_crowded;
     case Warning::kTrialsRedrawn:
@@ -124,6 +126,7 @@ const char* about(Warning warning) noexcept {
     case Warning::kShortTime:
       return "energy";
     case Warning::kShortInBand:
+    case Warning::kGuardInBand:
       return "band";
     case Warning::kFewTrials:
     case Warning::kNotStable:
@@ -155,6 +158,7 @@ ReportSection place_of(Warning warning) noexcept {
     case Warning::kShortTime:
       return ReportSection::kErrorSystem;
     case Warning::kShortInBand:
+    case Warning::kGuardInBand:
       return ReportSection::kInBand;
     case Warning::kFewTrials:
     case Warning::kNotStable:
@@ -219,6 +223,7 @@ const char* words_of(Warning warning) noexcept {
     case Warning::kNotStable:
       return "the adaptive procedure was not stable when its greatest number of blocks was reached";
     case Warning::kGuard:
+    case Warning::kGuardInBand:
       return "a full search found more energy than its trial: maximum and intervals are too low";
     case Warning::kCrowded:
       return "more signals than the trials have room for may be the worst within the ranges";

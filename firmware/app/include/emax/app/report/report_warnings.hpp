@@ -21,6 +21,7 @@ enum class Warning : std::uint8_t {
   kFewTrials,      ///< Fewer than rule (3) asks for.
   kNotStable,      ///< The adaptive procedure ended on its limit.
   kGuard,          ///< A search beats its trial.
+  kGuardInBand,    ///< The same of an in-band error.
   kCrowded,        ///< More signals than the trials have room for.
   kTrialsRedrawn,  ///< More than 1 % of the draws of the trials were no device.
   kRedrawn,        ///< The same of the draws of the uncertainty of E.
@@ -33,11 +34,11 @@ enum class Warning : std::uint8_t {
 };
 
 inline constexpr Warning kWarnings[] = {
-    Warning::kFit,          Warning::kOpenDamping,   Warning::kOnlyS,       Warning::kDisagreement,
-    Warning::kLowFrequency, Warning::kShortTime,     Warning::kShortInBand, Warning::kFewTrials,
-    Warning::kNotStable,    Warning::kGuard,         Warning::kCrowded,     Warning::kTrialsRedrawn,
-    Warning::kRedrawn,      Warning::kNoUncertainty, Warning::kRough,       Warning::kMeasurement,
-    Warning::kEnded,        Warning::kDataSheet,     Warning::kChange,
+    Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
+    Warning::kLowFrequency,  Warning::kShortTime,   Warning::kShortInBand,   Warning::kFewTrials,
+    Warning::kNotStable,     Warning::kGuard,       Warning::kGuardInBand,   Warning::kCrowded,
+    Warning::kTrialsRedrawn, Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
+    Warning::kMeasurement,   Warning::kEnded,       Warning::kDataSheet,     Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
