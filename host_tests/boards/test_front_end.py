@@ -154,11 +154,12 @@ def bias_kick_v(p: dict[str, float], rise_s: float) -> float:
 
 
 def rest_v(p: dict[str, float]) -> float:
-    """Volts behind U2 at rest, at most: dividers and difference amplifier of 0.1 %, 10 mV of offset of U2."""
+    """Volts behind U2 at rest, at most: dividers and difference amplifier of 0.1 %, 10 mV of offset of U2, and 0.5 mV
+    of each of the three amplifiers before it (MCP6021 and MCP6024, industrial)."""
     gain = p["R12"] / p["R10"]
     dividers_v = 2 * gain * SUPPLY_V / 2 * 1e-3
     common_v = SUPPLY_V / 2 * gain / (1 + gain) * 4e-3
-    return dividers_v + common_v + (1 + gain) * 10e-3
+    return dividers_v + common_v + (1 + gain) * 10e-3 + gain * 3 * 0.5e-3
 
 
 def main() -> int:
@@ -219,7 +220,7 @@ def main() -> int:
         f"{1e3 * rest_v(p):.0f} mV at rest",
         f"{rest_percent:.2f} % and {rest_deg:.2f}° at 5 kHz are left",
         f"skew within {math.ceil(1e7 * skew_s)}e-7 s",
-        f"{low_percent:.1f} % and {low_deg:.2f}° at 100 Hz, {high_percent:.1f} % and {high_deg:.1f}° at 5 kHz",
+        f"{low_percent:.2f} % and {low_deg:.2f}° at 100 Hz, {high_percent:.1f} % and {high_deg:.1f}° at 5 kHz",
     ]
     words = " ".join(readme.split())
     missing = [sentence for sentence in sentences if sentence not in words]
