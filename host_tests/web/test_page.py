@@ -309,6 +309,18 @@ class Devices(PageTest):
         self.assertEqual(len(self.browser.evaluate(cells.format(1))), 3)
         self.assert_quiet()
 
+    def test_have_an_interval_where_u_says_too_little(self):
+        options = ["--model", "1,60000,0.7,0.003,300,0.01", "--limit", "1", "--trials", "1000", "--trend", "none"]
+        printed = re.search(r"  In band, constant delay taken out +\*? +(\S+) +(\S+ to \S+) +(\S+)\n", self.succeed("report", *options))
+        path = self.directory / "results.json"
+        path.write_text(self.succeed("report", *options, "--json"), encoding="utf-8")
+        self.open()
+        self.drop(path)
+        self.assertEqual(tuple(self.browser.evaluate(FIGURES)[0][1:]), printed.groups())
+        listed = self.browser.evaluate("document.querySelector('#device-list tbody tr').cells[3].textContent")
+        self.assertEqual(listed, f"{printed.group(1)} ({printed.group(2)})")
+        self.assert_quiet()
+
     def test_are_gone_once_deleted(self):
         self.open()
         self.speak("CALC:MCAR:TRI 1000;:CALC:FILT:ORD 9")

@@ -19,7 +19,6 @@ namespace {
 using app::EvaluationResults;
 
 constexpr double kCoverageFactor = 2.0;
-constexpr double kPercent = 100.0;
 
 // Units as D-SI writes them.
 constexpr const char* kSensitivityUnit = "\\volt\\metre\\tothe{-1}\\second\\tothe{2}";

@@ -405,6 +405,9 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.pair("interval", known.symmetric.low, known.symmetric.high);
   json.pair("shortest", known.shortest.low, known.shortest.high);
   json.integer("redrawn", known.redraws);
+  const bool has_root = results.energy_v2s() >= 0.0;  // An energy difference may be below 0.
+  write_number_or_null("u_percent", has_root, known.u_percent, json);
+  write_number_or_null("U_percent", has_root, kCoverageFactor * known.u_percent, json);
   write_disagreements(known.guard, json);
   json.close();
 }

@@ -83,9 +83,12 @@ function figuresOf(report) {
     words: cells.filter((row) => row.length === 1).map(([text]) => text).join(' ')};
 }
 
-// A row of figures in one line.
+// A row of figures in one line. Where an interval stands in the place of U it is no ±.
 function withUncertainty([, found, expanded]) {
-  return expanded && expanded !== '-' ? `${found} ± ${expanded}` : found;
+  if (!expanded || expanded === '-') {
+    return found;
+  }
+  return expanded.includes(' to ') ? `${found} (${expanded})` : `${found} ± ${expanded}`;
 }
 
 // A value and its expanded uncertainty as texts, both to the uncertainty's second digit.
@@ -95,6 +98,24 @@ function roundedPair(value, expanded) {
   }
   const decimals = Math.min(Math.max(0, 1 - Math.floor(Math.log10(expanded))), 20);
   return [value.toFixed(decimals), Number(expanded.toPrecision(2)).toFixed(decimals)];
+}
+
+// The interval that stands in the place of U, as in the report: where U is above the figure, or one end is more than twice
+// as far away as the other. Its ends are rounded outwards. Null where U says enough.
+function intervalInPlaceOfU(value, expanded, shortest) {
+  if (!Array.isArray(shortest) || !(expanded > 0)) {
+    return null;
+  }
+  const low = Math.min(shortest[0], value);
+  const high = Math.max(shortest[1], value);
+  const [near, far] = [value - low, high - value].sort((a, b) => a - b);
+  if (expanded <= value && far <= 2 * near) {
+    return null;
+  }
+  const decimals = Math.min(Math.max(0, 1 - Math.floor(Math.log10(high))), 20);
+  const power = 10 ** decimals;
+  const least = Math.max(0, Math.floor(low * power));
+  return `${least === 0 ? 0 : (least / power).toFixed(decimals)} to ${(Math.ceil(high * power) / power).toFixed(decimals)}`;
 }
 
 // A bound to four digits: never below itself.
@@ -117,14 +138,17 @@ function figuresOfResults({model, energy, band, ideal, uncertainty}) {
     return null;
   }
   const percentOf = (squared) => (100 * Math.sqrt(squared / energy.T)) / (model.S * energy.a);
-  const row = (name, value, expanded, bound) =>
-    [name, ...roundedPair(value, expanded), bound > 0 ? roundedUp(bound) : '-'];
+  const row = (name, value, expanded, bound, shortest) => {
+    const interval = intervalInPlaceOfU(value, expanded, shortest);
+    const cells = interval ? [shown(value), interval] : roundedPair(value, expanded);
+    return [name, ...cells, bound > 0 ? roundedUp(bound) : '-'];
+  };
   const percent = percentOf(energy.E);
   const figures = [
     band?.matched && ['In band, constant delay taken out', band.matched.rms_percent, band.matched.U_percent,
-      band.matched.bound_percent],
-    band && ['In band, with its delay', band.rms_percent, band.U_percent, band.bound_percent],
-    ["The paper's figure, sqrt(E/T)", percent, (percent * uncertainty?.U) / (2 * energy.E), percentOf(energy.bound ?? NaN)],
+      band.matched.bound_percent, band.matched.shortest_percent],
+    band && ['In band, with its delay', band.rms_percent, band.U_percent, band.bound_percent, band.shortest_percent],
+    ["The paper's figure, sqrt(E/T)", percent, uncertainty?.U_percent, percentOf(energy.bound ?? NaN)],
     ideal && ['The same of an ideal sensor', ideal.rms_percent, NaN, NaN],
   ];
   return {note: 'at the estimates; worst rms error of signals within ±a, in % of S a',
