@@ -153,9 +153,12 @@ class Tables(PageTest):
         warnings = self.browser.evaluate("[...document.querySelectorAll('#certificate > .warning')].map((p) => p.textContent)")
         self.assertEqual(
             [re.sub(r"of [\d.]+ ms", "of T ms", warning) for warning in warnings],
+            # Of the paper's error, and of the one in band.
             [
-                "Warning: T is much shorter than the settling time, so the error has not developed within T. The paper takes T"
-                " from the settling time: give a T of T ms or more.",
+                "Warning: T is much shorter than the settling time, so the error has not developed within T: give a T of T ms or"
+                " more.",
+                "Warning: T is much shorter than the settling time, so the error has not developed within T: give a T of T ms or"
+                " more.",
                 "Warning: fewer trials than rule (3) asks for; the intervals and the maximum are less certain than their"
                 " digits say.",
             ],

@@ -274,7 +274,8 @@ TEST(Report, AnIntervalStandsInThePlaceOfUAtTheEndOfADistribution) {
   results.matched.energy_v2s = energy(0.0120);
   results.matched.uncertainty.u_percent = 0.0059;
   report = report_of(results);
-  EXPECT_TRUE(says(line_with(report, "In band, constant delay taken out"), "0.012             0.012 "));
+  EXPECT_TRUE(
+      says(line_with(report, "In band, constant delay taken out"), "0.012             0.012 "));
   EXPECT_FALSE(says(report, "+-U says too little"));
 }
 

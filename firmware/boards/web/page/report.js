@@ -100,6 +100,12 @@ function roundedPair(value, expanded) {
   return [value.toFixed(decimals), Number(expanded.toPrecision(2)).toFixed(decimals)];
 }
 
+// As the report has a figure without U: with an exponent only where there are more than nine decimals.
+function fourDigits(value) {
+  const decimals = Math.max(0, 3 - Math.floor(Math.log10(value)));
+  return decimals > 9 ? shown(value) : value.toFixed(decimals);
+}
+
 // The interval that stands in the place of U, as in the report: where U is above the figure, or one end is more than twice
 // as far away as the other. Its ends are rounded outwards. Null where U says enough.
 function intervalInPlaceOfU(value, expanded, shortest) {
@@ -140,7 +146,7 @@ function figuresOfResults({model, energy, band, ideal, uncertainty}) {
   const percentOf = (squared) => (100 * Math.sqrt(squared / energy.T)) / (model.S * energy.a);
   const row = (name, value, expanded, bound, shortest) => {
     const interval = intervalInPlaceOfU(value, expanded, shortest);
-    const cells = interval ? [shown(value), interval] : roundedPair(value, expanded);
+    const cells = interval ? [fourDigits(value), interval] : roundedPair(value, expanded);
     return [name, ...cells, bound > 0 ? roundedUp(bound) : '-'];
   };
   const percent = percentOf(energy.E);
