@@ -82,7 +82,7 @@ Problem work_in_band(const ReportOptions& options, BenchJob& job, ConsoleProgres
   const bool is_hidden = failure.status == Status::kLostDigits &&
                          failure.stage == app::Stage::kEnergy &&
                          options.settings.criterion != Criterion::kInBandError;
-  const Problem problem = describe_failure(sequencer.evaluation(), options, true);
+  Problem problem = describe_failure(sequencer.evaluation(), options, true);
   if (!is_hidden) {
     return problem;
   }
@@ -218,7 +218,7 @@ Problem both(const Problem& first, const Problem& second) {
 // What the star at the figures means, and whose E it is.
 std::string mark_of(const app::EvaluationResults& evaluation, const app::ReportContext& context,
                     const Problem& criterion_changed) {
-  const std::string mark = mark_of_figures(evaluation, context);
+  std::string mark = mark_of_figures(evaluation, context);
   if (criterion_changed.line.empty()) {
     return mark;
   }
