@@ -22,6 +22,33 @@ void Rcc::on_reset() {
   update();
 }
 
+void Rcc::set_hse_dead(bool dead) {
+  constexpr unsigned kFromHse = 2, kFromPll = 3;
+  hse_dead_ = dead;
+  if (!dead || !has(kCr, kHseReady)) {
+    return;
+  }
+  clear_bits(kCr, kHseReady);
+  const bool feeds_pll = has(kCr, kPllOn) && pll_takes_hse();
+  const unsigned used = used_clock();
+  const bool in_use = used == kFromHse || (used == kFromPll && feeds_pll);
+  if (!has(kCr, kSecurity)) {
+    if (in_use) {
+      report("clock_lost", kCr);
+    }
+    return;
+  }
+  // The clock security system, RM0440 7.2.10: back to HSI, HSE and a PLL on it off, NMI.
+  clear_bits(kCr, kHseOn | kSecurity | (feeds_pll ? kPllOn | kPllReady : 0));
+  set_bits(kCr, map_.hsi);
+  if (in_use) {
+    use_hsi();
+  }
+  set_bits(map_.flags, map_.security_flag);
+  context_.wires.set(kNmi, this, has(map_.flags, map_.security_flag));
+  update();
+}
+
 std::uint32_t Rcc::on_read(std::uint32_t offset, std::uint32_t value) {
   // Reading any of these registers back takes as long as a clock needs to arrive.
   for (const Gated& gated : gated_) {

@@ -40,11 +40,19 @@ class Rcc : public RegisterBlock {
   void set_watchdog_runs(bool runs) { watchdog_runs_ = runs; }
 
   /// Test: the external clock does not start, or stops.
-  virtual void set_hse_dead(bool dead) = 0;
+  void set_hse_dead(bool dead);
 
  protected:
+  /// The clock control register of all, and what of it is the same in all.
+  static constexpr std::uint32_t kCr = 0x00;
+  static constexpr std::uint32_t kHseOn = 1U << 16, kHseReady = 1U << 17;
+  static constexpr std::uint32_t kSecurity = 1U << 19;
+  static constexpr std::uint32_t kPllOn = 1U << 24, kPllReady = 1U << 25;
+
   /// Where a chip has what all have.
   struct Map {
+    std::uint32_t hsi;  ///< HSION and HSIRDY.
+    std::uint32_t flags, security_flag;
     std::uint32_t first_enable, last_enable;
     std::uint32_t reset_below;  ///< An enable register's offset less that of its resets.
     std::uint32_t slow_clock;   ///< LSION in bit 0, LSIRDY in bit 1.
@@ -62,9 +70,14 @@ class Rcc : public RegisterBlock {
   /// Registers that are the chip's own.
   virtual void write_own(std::uint32_t offset, std::uint32_t value) = 0;
   virtual void update() = 0;
+  virtual bool pll_takes_hse() const = 0;
+  /// What the system clock comes from: 2 for HSE, 3 for the PLL.
+  virtual unsigned used_clock() const = 0;
+  virtual void use_hsi() = 0;
   void write_slow_clock(std::uint32_t value);
 
   Clocks& clocks_;
+  bool hse_dead_ = false;
 
  private:
   struct Gated {

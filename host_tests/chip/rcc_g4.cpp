@@ -5,14 +5,12 @@
 namespace emax::chip {
 namespace {
 
-constexpr std::uint32_t kCr = 0x00, kCfgr = 0x08, kPllcfgr = 0x0C, kCifr = 0x1C, kCicr = 0x20;
+constexpr std::uint32_t kCfgr = 0x08, kPllcfgr = 0x0C, kCifr = 0x1C, kCicr = 0x20;
 constexpr std::uint32_t kFirstEnable = 0x48, kLastEnable = 0x60, kResetBelow = 0x20;
 constexpr std::uint32_t kCcipr = 0x88, kBdcr = 0x90, kCsr = 0x94, kCrrcr = 0x98;
 
 constexpr std::uint32_t kHsiOn = 1U << 8, kHsiReady = 1U << 10;
-constexpr std::uint32_t kHseOn = 1U << 16, kHseReady = 1U << 17, kHseBypass = 1U << 18;
-constexpr std::uint32_t kSecurity = 1U << 19;
-constexpr std::uint32_t kPllOn = 1U << 24, kPllReady = 1U << 25;
+constexpr std::uint32_t kHseBypass = 1U << 18;
 constexpr std::uint32_t kSecurityFlag = 1U << 8;
 constexpr std::uint32_t kForget = 1U << 23;    // CSR.RMVF
 constexpr std::uint32_t kHse_hz = 24'000'000;  // The board's crystal.
@@ -47,36 +45,14 @@ void check_speed_g4(const Clocks& clocks, Findings& findings) {
 
 RccG4::RccG4(Context context, Clocks& clocks)
     : Rcc(context, clocks, g474::rcc_registers(),
-          {kFirstEnable, kLastEnable, kResetBelow, kCsr, kCsr, 0xFE000000, kForget, kCauses}) {}
+          {kHsiOn | kHsiReady, kCifr, kSecurityFlag, kFirstEnable, kLastEnable, kResetBelow, kCsr,
+           kCsr, 0xFE000000, kForget, kCauses}) {}
 
-void RccG4::set_hse_dead(bool dead) {
-  hse_dead_ = dead;
-  if (!dead || !has(kCr, kHseReady)) {
-    return;
-  }
-  clear_bits(kCr, kHseReady);
-  const bool feeds_pll = has(kCr, kPllOn) && field(stored(kPllcfgr), 0, 2) == 3;
-  const unsigned used = field(get(kCfgr), 2, 2);
-  const bool in_use = used == 2 || (used == 3 && feeds_pll);
-  if (!has(kCr, kSecurity)) {
-    if (in_use) {
-      report("clock_lost", kCr);
-    }
-    return;
-  }
-  // The clock security system, RM0440 7.2.10: back to HSI, HSE and a PLL on it off, NMI.
-  clear_bits(kCr, kHseOn | kSecurity);
-  if (feeds_pll) {
-    clear_bits(kCr, kPllOn | kPllReady);
-  }
-  set_bits(kCr, kHsiOn | kHsiReady);
-  if (in_use) {
-    put(kCfgr, (stored(kCfgr) & ~0xFU) | 5U);
-  }
-  set_bits(kCifr, kSecurityFlag);
-  context_.wires.set(kNmi, this, has(kCifr, kSecurityFlag));
-  update();
-}
+bool RccG4::pll_takes_hse() const { return field(stored(kPllcfgr), 0, 2) == 3; }
+
+unsigned RccG4::used_clock() const { return field(get(kCfgr), 2, 2); }
+
+void RccG4::use_hsi() { put(kCfgr, (stored(kCfgr) & ~0xFU) | 5U); }
 
 void RccG4::write_own(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {

@@ -16,11 +16,13 @@ void check_speed_g4(const Clocks& clocks, Findings& findings);
 class RccG4 final : public Rcc {
  public:
   RccG4(Context context, Clocks& clocks);
-  void set_hse_dead(bool dead) override;
 
  private:
   void write_own(std::uint32_t offset, std::uint32_t value) override;
   void update() override;
+  bool pll_takes_hse() const override;
+  unsigned used_clock() const override;
+  void use_hsi() override;
 
   void write_control(std::uint32_t value);
   void start_source(std::uint32_t on, std::uint32_t ready, bool works, Time delay);
@@ -30,7 +32,6 @@ class RccG4 final : public Rcc {
   void switch_done();
   std::uint32_t source_hz(unsigned choice) const;
 
-  bool hse_dead_ = false;
   Time switched_at_ = 0;
 };
 

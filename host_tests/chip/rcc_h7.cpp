@@ -5,16 +5,14 @@
 namespace emax::chip {
 namespace {
 
-constexpr std::uint32_t kCr = 0x00, kCfgr = 0x10, kD1cfgr = 0x18, kD2cfgr = 0x1C;
+constexpr std::uint32_t kCfgr = 0x10, kD1cfgr = 0x18, kD2cfgr = 0x1C;
 constexpr std::uint32_t kD3cfgr = 0x20, kPllckselr = 0x28, kPllcfgr = 0x2C, kPll1divr = 0x30;
 constexpr std::uint32_t kPll1fracr = 0x34, kD1ccipr = 0x4C, kD2ccip2r = 0x54, kD3ccipr = 0x58;
 constexpr std::uint32_t kCifr = 0x64, kCicr = 0x68, kBdcr = 0x70, kCsr = 0x74, kRsr = 0xD0;
 constexpr std::uint32_t kFirstEnable = 0xD4, kLastEnable = 0xF4, kResetBelow = 0x58;
 
 constexpr std::uint32_t kHsiOn = 1, kHsiReady = 4, kCsiOn = 1U << 7, kCsiReady = 1U << 8;
-constexpr std::uint32_t kHseOn = 1U << 16, kHseReady = 1U << 17, kHseBypass = 1U << 18;
-constexpr std::uint32_t kSecurity = 1U << 19;
-constexpr std::uint32_t kPllOn = 1U << 24, kPllReady = 1U << 25;
+constexpr std::uint32_t kHseBypass = 1U << 18;
 constexpr std::uint32_t kOtherPlls = 0x14000000;
 constexpr std::uint32_t kSecurityFlag = 1U << 10;
 constexpr std::uint32_t kForget = 1U << 16;
@@ -64,33 +62,14 @@ void check_speed_h7(const Clocks& clocks, Findings& findings) {
 
 RccH7::RccH7(Context context, Clocks& clocks)
     : Rcc(context, clocks, h743::rcc_registers(),
-          {kFirstEnable, kLastEnable, kResetBelow, kCsr, kRsr, 0x55FA0000, kForget, kCauses}) {}
+          {kHsiOn | kHsiReady, kCifr, kSecurityFlag, kFirstEnable, kLastEnable, kResetBelow, kCsr,
+           kRsr, 0x55FA0000, kForget, kCauses}) {}
 
-void RccH7::set_hse_dead(bool dead) {
-  hse_dead_ = dead;
-  if (!dead || !has(kCr, kHseReady)) {
-    return;
-  }
-  clear_bits(kCr, kHseReady);
-  const bool feeds_pll = has(kCr, kPllOn) && field(stored(kPllckselr), 0, 2) == 2;
-  const unsigned used = field(get(kCfgr), 3, 3);
-  const bool in_use = used == 2 || (used == 3 && feeds_pll);
-  if (!has(kCr, kSecurity)) {
-    if (in_use) {
-      report("clock_lost", kCr);
-    }
-    return;
-  }
-  // The clock security system, as in the smaller chips: back to HSI, NMI.
-  clear_bits(kCr, kHseOn | kSecurity | (feeds_pll ? kPllOn | kPllReady : 0));
-  set_bits(kCr, kHsiOn | kHsiReady);
-  if (in_use) {
-    clear_bits(kCfgr, 0x3F);
-  }
-  set_bits(kCifr, kSecurityFlag);
-  context_.wires.set(kNmi, this, has(kCifr, kSecurityFlag));
-  update();
-}
+bool RccH7::pll_takes_hse() const { return field(stored(kPllckselr), 0, 2) == 2; }
+
+unsigned RccH7::used_clock() const { return field(get(kCfgr), 3, 3); }
+
+void RccH7::use_hsi() { clear_bits(kCfgr, 0x3F); }
 
 void RccH7::write_own(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {

@@ -20,7 +20,6 @@ void check_speed_h7(const Clocks& clocks, Findings& findings);
 class RccH7 final : public Rcc {
  public:
   RccH7(Context context, Clocks& clocks);
-  void set_hse_dead(bool dead) override;
   void set_revision(Revision revision) { revision_ = revision; }
   /// PWR_CR1.DBP lets through what is written to BDCR.
   void set_backup_open(bool open) { backup_open_ = open; }
@@ -28,6 +27,9 @@ class RccH7 final : public Rcc {
  private:
   void write_own(std::uint32_t offset, std::uint32_t value) override;
   void update() override;
+  bool pll_takes_hse() const override;
+  unsigned used_clock() const override;
+  void use_hsi() override;
 
   void write_control(std::uint32_t value);
   void start(std::uint32_t on, std::uint32_t ready, Time delay);
@@ -40,7 +42,6 @@ class RccH7 final : public Rcc {
   std::uint32_t source_hz(unsigned choice) const;
 
   Revision revision_ = Revision::kV;
-  bool hse_dead_ = false;
   bool backup_open_ = false;
 };
 

@@ -17,8 +17,7 @@ namespace emax::desk {
 namespace {
 
 using app::EvaluationResults;
-
-constexpr double kCoverageFactor = 2.0;
+using app::kCoverageFactor;
 
 // Units as D-SI writes them.
 constexpr const char* kSensitivityUnit = "\\volt\\metre\\tothe{-1}\\second\\tothe{2}";
@@ -153,15 +152,11 @@ void open_result(XmlWriter& xml, const char* name) {
   xml.open("dcc:data");
 }
 
-double expanded_percent(const app::EnergyUncertainty& known) {
-  return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
-}
-
 void add_figure(XmlWriter& xml, const char* name, const EvaluationResults& results,
                 const app::FigureResults& figure) {
   if (figure.exists()) {
     add_quantity(xml, name, results.percent_of(figure.energy_v2s),
-                 expanded_percent(figure.uncertainty), "\\percent");
+                 figure.uncertainty.expanded_percent(), "\\percent");
   }
 }
 

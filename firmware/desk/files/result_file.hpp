@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "emax/app/evaluate/evaluation_results.hpp"
+
 #include "desk/cli/problem.hpp"
 
 namespace emax::desk {
@@ -20,8 +22,7 @@ enum class FigureKind : std::uint8_t {
 
 inline constexpr std::size_t kFigureKinds = 3;
 
-/// Of every expanded uncertainty.
-inline constexpr double kCoverageFactor = 2.0;
+using app::kCoverageFactor;
 
 /// One figure of a device: the two of the band as rms errors in percent of S a, the energy in V^2
 /// s.

@@ -22,12 +22,12 @@ namespace emax::desk {
 namespace {
 
 using app::EvaluationResults;
+using app::kCoverageFactor;
 using app::TextWriter;
 
 constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr double kPercent = 100.0;
-constexpr double kCoverageFactor = 2.0;
 
 const char* name_of(Criterion criterion) {
   switch (criterion) {
@@ -139,21 +139,11 @@ std::string range_of(const EvaluationResults& results) {
          format.unit();
 }
 
-double expanded(const app::EnergyUncertainty& known) {
-  return known.exists() ? kCoverageFactor * known.u_percent : 0.0;
-}
-
-bool is_one_sided(const EvaluationResults& results, const app::FigureResults& figure) {
-  const double u = expanded(figure.uncertainty);
-  return u > 0.0 && app::is_one_sided(results.percent_of(figure.energy_v2s), u,
-                                      results.interval_percent_of(figure));
-}
-
 // With U, or with the interval where the figure is at one end of it.
 std::string in_band_value(const EvaluationResults& results, const app::FigureResults& figure) {
   const double percent = results.percent_of(figure.energy_v2s);
-  if (!is_one_sided(results, figure)) {
-    return percentage(percent, expanded(figure.uncertainty)) + " of S&nbsp;a";
+  if (!results.is_one_sided(figure)) {
+    return percentage(percent, figure.uncertainty.expanded_percent()) + " of S&nbsp;a";
   }
   const CoverageInterval interval = results.interval_percent_of(figure);
   return percentage(percent, 0.0) + " of S&nbsp;a; " + words_of([&](TextWriter& out) {
@@ -168,7 +158,7 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
   if (&figure == &results.matched) {
     name =
         std::string("Worst in-band error, constant delay taken out") +
-        (is_one_sided(results, figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
+        (results.is_one_sided(figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
   }
   append_figure(html, kind, name, in_band_value(results, figure));
 }
@@ -206,7 +196,8 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
     return;
   }
   const std::string value =
-      percentage(results.percent_of(energy), expanded(results.uncertainty)) + " of S&nbsp;a";
+      percentage(results.percent_of(energy), results.uncertainty.expanded_percent()) +
+      " of S&nbsp;a";
   const bool is_error = results.settings.criterion == Criterion::kIntegralSquareError;
   append_figure(html, "",
                 is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",

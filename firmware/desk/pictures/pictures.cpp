@@ -20,6 +20,7 @@ namespace emax::desk {
 namespace {
 
 using app::EvaluationResults;
+using app::kCoverageFactor;
 using app::TextWriter;
 
 constexpr std::uint32_t kNameShown = 36;
@@ -221,7 +222,6 @@ struct ResponseRange {
 };
 
 ResponseRange range_of(const EvaluationResults& results) {
-  constexpr double kCoverageFactor = 2.0;
   const Accelerometer& device = results.device.estimate;
   const Span<const double> common = results.fit.response().common();
   const Span<const ResponsePoint> points = results.fit.response().points();

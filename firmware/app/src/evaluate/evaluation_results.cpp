@@ -224,6 +224,12 @@ CoverageInterval EvaluationResults::interval_percent_of(
                  percent_of(figure.energy_v2s));
 }
 
+bool EvaluationResults::is_one_sided(const FigureResults& figure) const noexcept {
+  return figure.uncertainty.exists() &&
+         app::is_one_sided(percent_of(figure.energy_v2s), figure.uncertainty.expanded_percent(),
+                           interval_percent_of(figure));
+}
+
 double EvaluationResults::rms_error_v() const noexcept {
   return sqrt(energy_v2s() / settings.duration_s);
 }

@@ -14,7 +14,6 @@ namespace {
 
 using scpi::NumberRule;
 
-constexpr double kCoverageFactor = 2.0;
 constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = 1e300;
 constexpr double kMaxPhase_deg = 360.0;

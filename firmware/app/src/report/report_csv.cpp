@@ -7,7 +7,6 @@
 namespace emax::app {
 namespace {
 
-constexpr double kCoverageFactor = 2.0;
 constexpr int kTableDigits = 15;
 constexpr int kSharedDigits = 12;
 constexpr int kLevelDigits = 6;

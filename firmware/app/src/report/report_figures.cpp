@@ -118,17 +118,16 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
            const FigureResults& figure) noexcept {
   const bool has_u = figure.uncertainty.exists();
   const double percent = results.percent_of(figure.energy_v2s);
-  const double expanded = has_u ? kCoverageFactor * figure.uncertainty.u_percent : 0.0;
   const CoverageInterval interval =
       has_u ? results.interval_percent_of(figure) : CoverageInterval{};
   return {name,
           is_marked,
           percent,
           has_u,
-          expanded,
+          figure.uncertainty.expanded_percent(),
           figure.has_bound,
           results.percent_of(figure.bound_v2s),
-          has_u && is_one_sided(percent, expanded, interval),
+          results.is_one_sided(figure),
           interval};
 }
 
@@ -374,7 +373,7 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     out.label("Delay taken out").general(kMicro * matched.delay_s, 5).text(" us");
     const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
     out.text(is_given ? ", as given" : ", beta/(pi f0), the sensor's at low frequency").line();
-    if (row_of("", false, results, matched).is_one_sided) {
+    if (results.is_one_sided(matched)) {
       out.indent().text("the same in all trials: what their own differs by counts as error").line();
     }
     out.label("The true delay").text("may change the rms by ");

@@ -10,7 +10,6 @@
 
 namespace emax::app {
 
-inline constexpr double kCoverageFactor = 2.0;
 inline constexpr std::size_t kLabelWidth = 26;
 
 /// The words of a report, as text of its own or between the marks of somebody else.

@@ -32,6 +32,9 @@ struct Device {
 
 enum class Source : std::uint8_t { kPoints, kModel };
 
+/// k of every expanded uncertainty U = k u.
+inline constexpr double kCoverageFactor = 2.0;
+
 /// T shorter than this part of the settling time is much shorter: the error has then hardly begun.
 inline constexpr double kMuchShorter = 0.4;
 
@@ -90,6 +93,8 @@ struct EnergyUncertainty {
   double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a), S being each trial's.
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
+  /// @returns U of that percentage; 0 if there is none.
+  double expanded_percent() const noexcept { return exists() ? kCoverageFactor * u_percent : 0.0; }
 };
 
 /// @returns Whether +-U says little of a figure that the trials leave mostly on one side, and an
@@ -259,6 +264,8 @@ struct EvaluationResults {
   /// @returns The shortest interval of a figure that has an uncertainty, widened to hold the
   /// figure, in percent as by `percent_of()`.
   CoverageInterval interval_percent_of(const FigureResults& figure) const noexcept;
+  /// @returns Whether that interval has to stand in the place of +-U.
+  bool is_one_sided(const FigureResults& figure) const noexcept;
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
   double rms_error_v() const noexcept;
   /// @returns The output y(t) for the signal found with its limit a, in V.
