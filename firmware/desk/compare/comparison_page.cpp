@@ -155,7 +155,7 @@ void append_ranking(std::string& html, const Comparison& comparison, const std::
     append_picture(html, svg,
                    {"Devices by rank with their errors",
                     "Each device's largest error with its expanded uncertainty, or its interval "
-                    "where it is at one end of that; a bar that ends at the left edge goes on to "
+                    "where U says too little; a bar that ends at the left edge goes on to "
                     "0. Bars that overlap much belong to devices that share their ranks; at the "
                     "estimates the triangle is above every signal of any shape."},
                    1);

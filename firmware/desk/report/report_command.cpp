@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "emax/app/evaluate/evaluation_results.hpp"
@@ -75,14 +76,15 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
 
 // Of a criterion whose error rounding hides, as the sensor is nearly the filter: the in-band error
 // is another one, and has figures. Their report is then the answer, and the remark says why.
+//
+// @param[in] problem The failure in words, which is returned where there is another cause.
 Problem work_in_band(const ReportOptions& options, BenchJob& job, ConsoleProgress& progress,
-                     Problem& remark) {
+                     Problem problem, Problem& remark) {
   app::Sequencer& sequencer = job.sequencer();
   const app::Failure& failure = sequencer.evaluation().failure;
   const bool is_hidden = failure.status == Status::kLostDigits &&
                          failure.stage == app::Stage::kEnergy &&
                          options.settings.criterion != Criterion::kInBandError;
-  Problem problem = describe_failure(sequencer.evaluation(), options, true);
   if (!is_hidden) {
     return problem;
   }
@@ -131,10 +133,8 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {
-    const bool is_hidden = sequencer.evaluation().failure.status == Status::kLostDigits;
-    problem = is_hidden
-                  ? work_in_band(options, job, progress, remark)
-                  : describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
+    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
+    problem = work_in_band(options, job, progress, std::move(problem), remark);
   }
   return problem;
 }

@@ -424,13 +424,18 @@ void write_warning(const char* about, const char* words, double least_s,
   json.close();
 }
 
+void write_if_due(Warning warning, const EvaluationResults& results, const ReportContext& context,
+                  JsonWriter& json) noexcept {
+  if (holds(warning, results, context)) {
+    write_warning(about(warning), words_of(warning), least_time_s(warning, results), json);
+  }
+}
+
 void write_warnings(const EvaluationResults& results, const ReportContext& context,
                     JsonWriter& json) noexcept {
   json.open("warnings", '[');
   for (const Warning warning : kWarnings) {
-    if (holds(warning, results, context)) {
-      write_warning(about(warning), words_of(warning), least_time_s(warning, results), json);
-    }
+    write_if_due(warning, results, context, json);
   }
   json.close(']');
 }
@@ -716,9 +721,8 @@ void write_warnings(const InstrumentState& state, const ReportContext& context,
     const bool is_valid = place == ReportSection::kMonteCarlo    ? state.has_trials
                           : place == ReportSection::kUncertainty ? state.has_uncertainty
                                                                  : state.has_energy;
-    if (is_valid && holds(warning, state.evaluation, context)) {
-      write_warning(about(warning), words_of(warning), least_time_s(warning, state.evaluation),
-                    json);
+    if (is_valid) {
+      write_if_due(warning, state.evaluation, context, json);
     }
   }
   json.close(']');
