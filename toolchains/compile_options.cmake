@@ -54,10 +54,9 @@ function(emax_add_freestanding_library name)
 endfunction()
 
 # emax_compile_headers_alone(<library>)
-# Compiles each header in include/ by itself, included twice, as somebody who uses only that header would. In the builds
-# that have tests: these are of every compiler and every C++ library, and a core makes no difference.
+# Compiles each header in include/ by itself, included twice, as somebody who uses only that header would.
 function(emax_compile_headers_alone library)
-  if(NOT EMAX_TESTS)
+  if(NOT EMAX_HEADERS_ALONE)
     return()
   endif()
   file(GLOB_RECURSE headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/include CONFIGURE_DEPENDS include/*.hpp)

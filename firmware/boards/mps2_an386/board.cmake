@@ -8,4 +8,4 @@ emax_declare_board(${EMAX_MPS2}
   TABLE_CLOCK_MHZ 170
   TABLE_LEFT_OUT steps-10 report
   GOOGLETEST_MEMORY googletest.ld
-  SLOW_TEST_S 1.5)
+  SLOW_TEST_S 0.5)

@@ -8,4 +8,4 @@ emax_declare_board(${EMAX_MPS2}
   TABLE_CLOCK_MHZ 480
   EXTRA_JOBS all_trials
   GOOGLETEST_MEMORY googletest.ld
-  SLOW_TEST_S 1.3)
+  SLOW_TEST_S 0.5)
