@@ -256,6 +256,23 @@ class Constants(unittest.TestCase):
             self.assertGreater(found, by_hand * (1.0 - 1e-6))
             self.assertLess(found, by_hand * 1.005)
 
+    def test_energies_of_signals_are_enclosed(self):
+        switches = [0.21e-3, 0.35e-3, 0.8e-3]
+        for system in self.SYSTEMS:
+            with self.subTest(system=system):
+                found = check_certificate.signal_energy(check_certificate.Response.parts_of(system), switches, self.TIME)
+                by_hand = reference.switching_energy(system, switches, self.TIME, 1.0)
+                self.assertLess(float(found.delta.b), 1e-20)
+                self.assertAlmostEqual(float(found.mid.b) / by_hand, 1.0, delta=1e-10)
+
+    def test_energy_of_a_small_error_keeps_its_digits(self):
+        # 1e-4 of the output. Quadrature in floating point is 1.3e-8 off; from the same poles with 50 digits, by hand:
+        sensor = reference.Accelerometer(1.0, 50000.0, 0.02)
+        system = reference.System(sensor, 10, 1000.0, None, "band", 1.2732395447351627e-07)
+        found = check_certificate.signal_energy(check_certificate.Response.parts_of(system),
+                                                [0.0004019210078617678, 0.0009926302416682071], 2e-3)
+        self.assertAlmostEqual(float(found.mid.b) / 2.1297992233671387e-11, 1.0, delta=1e-14)
+
     def test_elements_of_phi_are_enclosed(self):
         edges = np.linspace(0.0, self.TIME, 41)
         generator = np.random.default_rng(1)
@@ -312,6 +329,18 @@ class CheckOtherCertificates(unittest.TestCase):
                 certificate, bound = check_certificate.check(json.loads(path.read_text(encoding="ascii")))
                 self.assertGreater(bound, certificate.energy)
                 self.assertLess(bound, 1.1 * certificate.energy)
+
+    def test_high_resonance_in_band(self):
+        """Its mesh is that of the resonance, though the cells are those of the band."""
+        with tempfile.TemporaryDirectory() as directory:
+            path = pathlib.Path(directory) / "certificate.json"
+            run = subprocess.run(
+                [PROGRAM, "certify", "--model", "1,25000,0.02", "--criterion", "band", "--time", "0.002", "--effort", "0.5",
+                 "--rounds", "5", "--out", str(path)], capture_output=True, timeout=55, check=False)
+            self.assertEqual((run.returncode, run.stderr), (0, b""))
+            certificate, bound = check_certificate.check(json.loads(path.read_text(encoding="ascii")))
+            self.assertGreater(bound, certificate.energy)
+            self.assertLess(bound, 1.1 * certificate.energy)
 
     def rejects_another_criterion(self, certificate):
         model = certificate["model"]
