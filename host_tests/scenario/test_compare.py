@@ -322,6 +322,23 @@ class CompareInBand(Comparing, ProgramTest):
             self.assertRegex(text, r"\n  1-3   open    beta +\S")
         self.assertIn("1.000e-03 to 9.000e-03", text)
 
+    def test_range_of_open_damping_in_percent(self):
+        """sqrt(E/T)/(S a) as in a report: 1e-3 and 9e-3 V^2 s in 2 ms are 0.7071 and 2.121 V."""
+        open_one = result(2e-3, None, matched=1.0, u_band=None, device="open", S=1.0, a=1) | {
+            "fit": {"determined": "all but beta", "E_range": [1e-3, 9e-3]},
+            "warnings": [{"about": "damping", "text": "the points do not determine beta"}]}
+        self.compare(open_one, result(5e-3, matched=3.0, device="good", S=1.0, a=1), by="matched")
+        self.assertIn("; over the range the paper's figure of open is 70.71 to 212.1 % of S a.",
+                      " ".join(self.succeed("compare", "0.json", "1.json").split()))
+
+    def test_marks_have_to_be_there(self):
+        for name, words in [("warnings", "warnings is no list"), ("simulated", "simulated is no truth value")]:
+            cut = result(matched=3.0)
+            del cut[name]
+            self.save("0.json", result(matched=1.0))
+            self.save("1.json", cut)
+            self.refuse(["compare", "0.json", "1.json"], f"1.json: {words}; expected a results.json of emax report")
+
     def test_warnings_of_the_reports(self):
         files = [result(matched=1.0, device="A"), result(matched=3.0, device="B"), result(matched=5.0, device="C")]
         files[0]["warnings"] = files[2]["warnings"] = [{"about": "fit_draws", "text": "u is \x1bdoubtful"}]

@@ -158,6 +158,25 @@ void add_note_on_delays(const Comparison& comparison, std::vector<Note>& notes) 
   }
 }
 
+// As in a report, whose range is of E alone.
+std::string ranges_of(const std::vector<const Result*>& open) {
+  std::string words;
+  for (const Result* result : open) {
+    const Figure& energy = result->figure(FigureKind::kEnergy);
+    if (energy.has_range && energy.low > 0.0) {
+      words += text_by([&](TextWriter& out) {
+        out.text("; over the range ")
+            .text(result->criterion == "ise" ? "the paper's figure" : "sqrt(E/T)")
+            .text(" of ");
+        out.text(list_of({result}).c_str()).text(" is ");
+        out.general(result->rms_percent(energy.low), 4).text(" to ");
+        out.general(result->rms_percent(energy.high), 4).text(" % of S a");
+      });
+    }
+  }
+  return words;
+}
+
 void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) {
   const std::vector<const Result*> warned =
       those_that(comparison, [](const Result& result) { return result.fit_warns; });
@@ -173,7 +192,8 @@ void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) 
   if (!open.empty()) {
     notes.push_back(
         {"Told apart from no other, because the points leave the damping open: " + list_of(open) +
-             ". The figure is that of the nearest damping that a device may have.",
+             ". The figure is that of the nearest damping that a device may have" +
+             ranges_of(open) + ".",
          true});
   }
   const std::vector<const Result*> simulated = simulated_of(comparison);

@@ -320,6 +320,22 @@ void take_marks(const JsonValue& root, Result& result) {
   result.is_simulated = is_said ? root["simulated"].is_true() : root["bench"]["truth"].is_object();
 }
 
+// Files from before there were warnings have none of what came with them, either.
+Problem check_marks(const JsonValue& root, const std::string& file) {
+  const bool has_warnings = root["warnings"].kind() == JsonValue::Kind::kArray;
+  const bool is_said = root["simulated"].kind() == JsonValue::Kind::kBoolean;
+  bool is_new = has_warnings || is_said;
+  for (const char* name : {"band", "ideal", "uncertainty"}) {
+    is_new = is_new || root[name].is_object();
+  }
+  if (!is_new || (has_warnings && is_said)) {
+    return {};
+  }
+  return bad_input(file + ": " +
+                   (has_warnings ? "simulated is no truth value" : "warnings is no list") + "; " +
+                   kExpectation);
+}
+
 Problem parse_result(const std::string& path, const std::string& file, JsonValue& root) {
   std::string text;
   if (Problem problem = read_text_file(path, kMaxFileSize, kExpectation, text)) {
@@ -342,7 +358,13 @@ double Result::rms_v() const noexcept {
   return sqrt(figure(FigureKind::kEnergy).value / duration_s);
 }
 
-double Result::rms_percent() const noexcept { return 100.0 * rms_v() / (sensitivity * limit_mps2); }
+double Result::rms_percent() const noexcept {
+  return rms_percent(figure(FigureKind::kEnergy).value);
+}
+
+double Result::rms_percent(double energy) const noexcept {
+  return 100.0 * sqrt(energy / duration_s) / (sensitivity * limit_mps2);
+}
 
 Problem read_result(const std::string& path, Result& result) {
   result = {};
@@ -359,6 +381,9 @@ Problem read_result(const std::string& path, Result& result) {
   if (!root["energy"].is_object() || !root["energy"]["E"].is_number()) {
     return bad_input(result.file + ": holds no maximum energy, its measurement has failed; " +
                      kExpectation + " that ended well");
+  }
+  if (Problem problem = check_marks(root, result.file)) {
+    return problem;
   }
   result.device = result.file;
   take_label(root["labels"]["device"], result.device);

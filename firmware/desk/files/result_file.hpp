@@ -97,6 +97,8 @@ struct Result {
   double rms_v() const noexcept;
   /// @returns The same in percent of S a.
   double rms_percent() const noexcept;
+  /// @returns That of another energy in V^2 s.
+  double rms_percent(double energy_v2s) const noexcept;
 };
 
 /// Reads a results.json of this version of the program, of at most 4 MiB.

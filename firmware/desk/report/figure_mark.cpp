@@ -26,7 +26,9 @@ std::string range_of(const app::EvaluationResults& results) {
   out.text("\n  The points leave beta open: these figures are at ");
   out.general(results.judgement.device.damping, 3);
   if (results.has_cut_range && results.cut_low_v2s > 0.0) {
-    out.text(";\n  the paper's is ").general(results.percent_of(results.cut_low_v2s), 4);
+    const bool is_papers = results.settings.criterion == Criterion::kIntegralSquareError;
+    out.text(is_papers ? ";\n  the paper's is " : ";\n  that of E is ")
+        .general(results.percent_of(results.cut_low_v2s), 4);
     out.text(" to ").general(results.percent_of(results.cut_high_v2s), 4).text(" over the range");
   }
   out.text(".");
