@@ -163,6 +163,27 @@ Problem judge_fit(const ReportOptions& options, app::Evaluation& evaluation,
   return {};
 }
 
+bool has_room(const ModalModel& model, double duration_s) {
+  return coarsest_certificate(model, duration_s) <= kMaxCertificateCells &&
+         mesh_intervals(model, duration_s) <= kMaxMesh;
+}
+
+Problem too_long(const ModalModel& model, double duration_s) {
+  constexpr int kHalvings = 50;
+  constexpr int kDigits = 3;
+  double longest_s = 0.0;
+  double step_s = duration_s;
+  for (int i = 0; i < kHalvings; ++i) {
+    step_s *= 0.5;
+    longest_s += has_room(model, longest_s + step_s) ? step_s : 0.0;
+  }
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.text("--time: the proof needs more cells than there is room for; expected at most ");
+  out.general(-rounded_up(-longest_s, kDigits - 1), kDigits).text(" s");
+  return bad_input(sink.text());
+}
+
 // Finds the device and the signal with the largest energy known.
 Problem find_energy(const ReportOptions& options, ImportedPoints& imported,
                     app::EvaluationResults& results) {
@@ -191,6 +212,10 @@ Problem find_energy(const ReportOptions& options, ImportedPoints& imported,
     progress.show(name_of(results.stage), evaluation.progress());
     evaluation.step();
     status = results.status();
+    const double duration_s = options.settings.duration_s;
+    if (status == Status::kOk && results.has_model && !has_room(results.model, duration_s)) {
+      return too_long(results.model, duration_s);
+    }
   }
   if (status == Status::kOk) {
     return has_points ? judge_fit(options, evaluation, results) : Problem{};
@@ -254,9 +279,7 @@ class Work final {
       status = certificate_->start(models, duration_s, cells, {}, workspace);
     }
     if (status == Status::kTooManyCells) {
-      return bad_input(
-          "--time: the proof needs more cells than there is room for; expected a "
-          "shorter time");
+      return too_long(model, duration_s);
     }
     return status == Status::kOk ? Problem{}
                                  : bad_input(std::string("--model: ") + explain(status));
@@ -381,7 +404,7 @@ void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& o
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
       out.text(separator).text("{\"about\": \"").text(about(warning));
-      out.text("\", \"text\": \"").text(words_of(warning)).text("\"");
+      out.text("\", \"text\": \"").text(words_of(warning, evaluation)).text("\"");
       const double least_s = least_time_s(warning, evaluation);
       if (least_s > 0.0) {
         out.text(", \"least_time_s\": ").exact(least_s);
@@ -419,7 +442,8 @@ void write_warnings(const CertifyResult& result, app::TextWriter& out) {
   const app::EvaluationResults& evaluation = *result.evaluation;
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
-      write_warning(sentence_of(words_of(warning), least_time_s(warning, evaluation)), out);
+      write_warning(sentence_of(words_of(warning, evaluation), least_time_s(warning, evaluation)),
+                    out);
     }
   }
   if (!result.cause.empty()) {
@@ -463,6 +487,16 @@ void write_best_corner(const BoxProof& box, app::TextWriter& out) {
   out.line();
 }
 
+// With the digits that the bound above is printed with.
+void write_gap(double percent, app::TextWriter& out) {
+  constexpr double kLeast = 0.001;
+  if (percent < kLeast) {
+    out.text("< 0.001");
+  } else {
+    out.fixed(percent, 3);
+  }
+}
+
 void write_text(const CertifyResult& result, app::TextWriter& out) {
   const ProvenEnergy& proven = result.proven;
   const EnergyCertificate& certificate = *proven.certificate;
@@ -492,7 +526,8 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   out.text("Proven      E <= ").general(rounded_up(result.bound_v2s(), 6), 7);
   out.text(" V^2 s for every such signal");
   out.text(proven.box != nullptr ? ", and every device in the box" : "");
-  out.text("\nGap         ").fixed(100.0 * result.gap(), 3);
+  out.text("\nGap         ");
+  write_gap(100.0 * result.gap(), out);
   const bool is_error = proven.model->criterion() != Criterion::kEnergyDifference;
   out.text(" % of the energy reached\n").text(is_error ? "RMS error   " : "sqrt(E/T)   ");
   out.general(std::sqrt(proven.energy_v2s / duration_s), 5).text(" V reached, at most ");
