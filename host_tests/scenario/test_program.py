@@ -503,7 +503,17 @@ class BadOptions(ProgramTest):
 
     def test_more_signs_than_the_table_holds(self):
         device = ["--model", "1,10000,0.01", "--method", "paper", "--step", "1e-5", "--trend", "none"]
-        self.refuse_option("--time", "0.12", "2048", "shorten", device=device)
+        # A switch every 50 us, and 8 of the 2048 for the ends: 0.102 s, less rounding.
+        self.refuse_option("--time", "0.12", "2048", "shorten", "; there is room for 0.1019 s", device=device)
+        self.succeed("report", *device, "--time", "0.1019")
+
+    def test_birge_ratio_without_a_fit(self):
+        self.refuse(["report", *MODEL, "--birge"], "emax: --birge: excluded by --model", "expected with points")
+
+    def test_energy_difference_of_a_time_too_short(self):
+        """Both outputs begin with powers of t: they do not cancel, they are small."""
+        options = ["report", *MODEL, "--criterion", "difference", "--trend", "none", "--time", "1e-7"]
+        self.refuse(options, "emax: --time: ", "rounding hides their energies; take a longer time")
 
 
 class Bench(ProgramTest):

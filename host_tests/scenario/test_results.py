@@ -287,7 +287,7 @@ class FigureValues(ProgramTest):
         self.assertIn("There is a warning below, on: band.", text)
         self.assertRegex(text[text.index("IN-BAND"):], r"WARNING: T is much shorter [^:]*: give a T of 14\.\d ms or more")
         page = (self.directory / "out" / "report.html").read_text(encoding="utf-8")
-        self.assertRegex(page, r"give at least the settling time, 14(\.\d)? ms")
+        self.assertRegex(page, r"settling time of the in-band error; give at least that time, 14(\.\d)? ms")
         # Long enough, and none.
         self.assertEqual(self.json_of("--model", PAPER, "--cutoff", "300", "--time", "0.015", "--trend", "none")["warnings"], [])
 
@@ -326,6 +326,36 @@ class FigureValues(ProgramTest):
         text = self.succeed("report", "--model", "1,4073,0.3182", "--time", "1e-5", "--trend", "none")
         self.assertIn("T is too short beside the settling time for so small an error to develop; take a longer one.", text)
         self.assertNotIn("order,", text[text.index("THE FIGURES"):text.index("WHAT WAS PUT IN")])
+
+    def test_interval_in_the_place_of_u_of_the_energy(self):
+        # A u(f0) of half of f0; trials with less energy than the filter, whose difference has no root.
+        for options, row, is_below in [
+                (["--model", "1,4073,0.3,0,2200,0.25"], r"The paper's figure, sqrt\(E/T\)", False),
+                (["--model", "1,1100,0.5,0.3,300,0.1", "--criterion", "difference", "--gain", "1"],
+                 r"The energy difference, sqrt\(E/T\)", True)]:
+            common = [*options, "--trials", "2000", "--trend", "none"]
+            text = self.succeed("report", *common, "--out", "out")
+            found = json.loads((self.directory / "out" / "results.json").read_text(encoding="utf-8"))["uncertainty"]
+            self.assertEqual((found["shortest"][0] < 0.0, found["U_percent"] is None), (is_below, is_below))
+            low, high = (100.0 * math.sqrt(max(end, 0.0) / 0.002) for end in found["shortest"])  # S = a = 1.
+            shown = re.search(row + r" +\* +[\d.]+ +([\d.]+) to ([\d.]+) ", text)
+            self.assertTrue(shown, text[:2000])
+            for end, given, least in [(low, float(shown[1]), high / 100), (high, float(shown[2]), high / 100)]:
+                self.assertAlmostEqual(given, end, delta=max(least, 1.0))
+            self.assertLessEqual(float(shown[1]), low)
+            self.assertGreaterEqual(float(shown[2]), high)
+            page = (self.directory / "out" / "report.html").read_text(encoding="utf-8")
+            self.assertRegex(page, r"√\(E/T\)</dt><dd>[^<]*95 % interval ")
+
+    def test_certify_says_how_long_a_time_it_takes(self):
+        # 1000 cells, 10 for each period of 4073 Hz. Before the search, which would take minutes.
+        device = ["certify", "--model", "1,4073,0.3182", "--effort", "0.1", "--rounds", "1", "--time"]
+        self.refuse([*device, "1"], "emax: --time: ", "more cells than there is room for; expected at most 0.0245 s")
+        self.succeed(*device, "0.0245")
+
+    def test_certify_prints_a_gap_that_is_not_nothing(self):
+        text = self.succeed("certify", "--model", "1,25000,0.02", "--criterion", "band", "--effort", "0.5", "--rounds", "5")
+        self.assertRegex(text, r"\nGap +< 0\.001 % of the energy reached\n")
 
     def test_certify_names_what_its_numbers_are(self):
         quick = ["certify", "--model", "1,4073,0.3182", "--rounds", "1"]

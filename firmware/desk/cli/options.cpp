@@ -49,6 +49,10 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
         "--reference-uncertainty: excluded by --model; expected with points, since the "
         "uncertainties of a model contain it");
   }
+  if (has_model && options.settings.birge) {
+    return bad_input(
+        "--birge: excluded by --model; expected with points, since the ratio is that of their fit");
+  }
   return has_model ? check_model(options.device) : Problem{};
 }
 

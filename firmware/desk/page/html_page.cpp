@@ -140,12 +140,13 @@ std::string range_of(const EvaluationResults& results) {
 }
 
 // With U, or with the interval where the figure is at one end of it.
-std::string in_band_value(const EvaluationResults& results, const app::FigureResults& figure) {
-  const double percent = results.percent_of(figure.energy_v2s);
-  if (!results.is_one_sided(figure)) {
-    return percentage(percent, figure.uncertainty.expanded_percent()) + " of S&nbsp;a";
+std::string value_of(const EvaluationResults& results, const app::EnergyUncertainty& known,
+                     double energy) {
+  const double percent = results.percent_of(energy);
+  if (!results.is_one_sided(known, energy)) {
+    return percentage(percent, known.expanded_percent()) + " of S&nbsp;a";
   }
-  const CoverageInterval interval = results.interval_percent_of(figure);
+  const CoverageInterval interval = results.interval_percent_of(known.shortest, energy);
   return percentage(percent, 0.0) + " of S&nbsp;a; " + words_of([&](TextWriter& out) {
            out.general(kPercent * results.settings.probability, 6).text(" % interval ");
            out.text(range_text(interval.low, interval.high).c_str()).text(" %");
@@ -160,7 +161,7 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
         std::string("Worst in-band error, constant delay taken out") +
         (results.is_one_sided(figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
   }
-  append_figure(html, kind, name, in_band_value(results, figure));
+  append_figure(html, kind, name, value_of(results, figure.uncertainty, figure.energy_v2s));
 }
 
 constexpr const char* kFirst = " class=\"first\"";
@@ -195,9 +196,7 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
   if (energy < 0.0 || results.settings.criterion == Criterion::kInBandError) {
     return;
   }
-  const std::string value =
-      percentage(results.percent_of(energy), results.uncertainty.expanded_percent()) +
-      " of S&nbsp;a";
+  const std::string value = value_of(results, results.uncertainty, energy);
   const bool is_error = results.settings.criterion == Criterion::kIntegralSquareError;
   append_figure(html, "",
                 is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",
@@ -318,7 +317,8 @@ void append_warnings(std::string& html, const EvaluationResults& results,
   }
   std::string list = "<ul>";
   for (const app::Warning warning : warnings) {
-    const std::string words = sentence_of(words_of(warning), least_time_s(warning, results));
+    const std::string words =
+        sentence_of(words_of(warning, results), least_time_s(warning, results));
     list += "<li>" + link_to(place_of(warning)) + ": " +
             words_of([&](TextWriter& out) { out.text(words.c_str()); }) + "</li>";
   }

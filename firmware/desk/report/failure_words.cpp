@@ -6,6 +6,7 @@
 
 #include "emax/app/base/text_writer.hpp"
 #include "emax/app/report/report.hpp"
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/identify/fit_judgement.hpp"
 
 #include "desk/cli/console.hpp"
@@ -34,13 +35,16 @@ std::string in_line(const std::string& text) {
 }
 
 // What has to be changed: an option, or the device.
-std::string culprit(const app::Failure& failure, const ReportOptions& options) {
+std::string culprit(const app::EvaluationResults& evaluation, const ReportOptions& options) {
+  const app::Failure& failure = evaluation.failure;
+  const bool is_lost_in_time =
+      failure.status == Status::kLostDigits && holds(app::Warning::kShortTime, evaluation, {});
   const bool is_search =
       failure.status == Status::kTooManyCells || failure.status == Status::kTooManySwitches;
   if (is_search && failure.stage == app::Stage::kTrend) {
     return "--trend";
   }
-  if (is_search) {
+  if (is_search || is_lost_in_time) {
     return "--time";
   }
   if (options.measures()) {
@@ -58,7 +62,7 @@ Problem describe_failure(const app::EvaluationResults& evaluation, const ReportO
   StringSink sentence;
   app::TextWriter writer(sentence);
   write_failure(evaluation, writer);
-  const std::string who = culprit(failure, options);
+  const std::string who = culprit(evaluation, options);
   std::string line =
       who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());
   if (is_inverted && !options.points_path.empty()) {

@@ -26,6 +26,7 @@ using emax::app::ReportPart;
 using emax::app::ReportSection;
 using emax::app::Settings;
 using emax::app::TextWriter;
+using emax::app::Warning;
 using emax::test::evaluated;
 using emax::test::expect_well_formed;
 using emax::test::kTable2;
@@ -205,6 +206,32 @@ TEST(Report, TheTimeAdvisedIsEnough) {
   settings.duration_s = 0.00146;
   const std::string report = report_of(evaluated({kTable2.estimate, {}}, settings));
   EXPECT_FALSE(says(report.substr(0, report.find("MAXIMUM ENERGY")), "settling time, so"));
+}
+
+TEST(Report, AdvisesNoTimeThatCannotBeSearched) {
+  // Hardly damped, it rings for 3/(beta 2 pi f0) = 1.17 s; a signal that follows it switches every
+  // 1/(2 f0), and 8 of the switches are kept for its ends.
+  static_assert(emax::kMaxSwitches == 2048 || emax::kMaxSwitches == 256);
+  const EvaluationResults& results = evaluated({{1.0, 4073.0, 1e-4}, {}}, quick_settings());
+  const std::string report = report_of(results);
+  EXPECT_TRUE(says(report, emax::kMaxSwitches == 2048 ? "as long: there is room for 250 ms."
+                                                      : "as long: there is room for 30.4 ms."));
+  EXPECT_FALSE(says(report.substr(0, report.find("MAXIMUM ENERGY")), "give a T of"));
+  EXPECT_EQ(emax::app::least_time_s(Warning::kShortTime, results), 0.0);
+  EXPECT_TRUE(says(words_of(Warning::kShortTime, results), "no T that can be searched"));
+}
+
+TEST(Report, SaysWhichSettlingTimeIsMeant) {
+  Settings settings = quick_settings();
+  settings.duration_s = 0.0005;
+  const EvaluationResults& results = evaluated({kTable2.estimate, {}}, settings);
+  const std::string report = report_of(results);
+  EXPECT_TRUE(says(line_with(report, "5 % settling time"), "1.453582 ms"));
+  EXPECT_TRUE(says(line_with(report, "5 % settling, in band"), "4.18"));
+  EXPECT_TRUE(says(report, "T is much shorter than the settling time, so"));
+  EXPECT_TRUE(says(report, "T is much shorter than that of the in-band error, so"));
+  EXPECT_FALSE(says(words_of(Warning::kShortTime, results), "in-band"));
+  EXPECT_TRUE(says(words_of(Warning::kShortInBand, results), "in-band"));
 }
 
 /// Found, U and bound of a row of the figures.

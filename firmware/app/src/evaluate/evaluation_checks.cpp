@@ -45,6 +45,12 @@ constexpr char kTooManyCellsTrials[] =
 constexpr char kTooManySwitches[] =
     "The best signal changes sign more than " EMAX_TEXT_OF(EMAX_MAX_SWITCHES) " times, more than the table holds; shorten the "
     "time.";
+constexpr char kLostInTime[] =
+    "Within so short a T both outputs are so small that rounding hides their energies; take a "
+    "longer time.";
+constexpr char kLostDifference[] =
+    "The energies of sensor and filter are so nearly the same that rounding hides their "
+    "difference; take another cutoff or order.";
 constexpr char kNoDevice[] =
     "There is no accepted device to go on with; start with points or parameters.";
 constexpr char kOtherSettings[] =
@@ -92,8 +98,8 @@ Failure check_grids(const EvaluationResults& results, const Settings& settings,
     const double duration_s = is_energy ? settings.duration_s : settings.trend_s[i - 1];
     const std::size_t cells = search_cells(results.model, search_settings(settings, duration_s));
     if (cells > kMaxCells && (is_energy || !adapts_trend(settings))) {
-      return failure_of_search(Status::kTooManyCells, settings.method,
-                               is_energy ? Stage::kEnergy : Stage::kTrend, duration_s);
+      return failure_of_search(Status::kTooManyCells, settings,
+                               is_energy ? Stage::kEnergy : Stage::kTrend, duration_s, 0.0);
     }
     if (is_energy && is_paper && wants_trials(goal) && results.has_uncertainty() &&
         cells > GridWorkspace::kMaxTrialCells) {
@@ -159,10 +165,14 @@ Failure failure_of_trials(Status status, Stage stage, bool is_exhausted) noexcep
   return {status, stage, is_exhausted ? kNormalTooWide : kTrialsFailed};
 }
 
-Failure failure_of_search(Status status, Method method, Stage stage, double duration_s) noexcept {
+Failure failure_of_search(Status status, const Settings& settings, Stage stage, double duration_s,
+                          double settling_s) noexcept {
   const char* reason = explain(status);
   if (status == Status::kTooManyCells) {
-    reason = method == Method::kPaper ? kTooManyCellsPaper : kTooManyCellsBest;
+    reason = settings.method == Method::kPaper ? kTooManyCellsPaper : kTooManyCellsBest;
+  }
+  if (status == Status::kLostDigits && settings.criterion == Criterion::kEnergyDifference) {
+    reason = duration_s < kMuchShorter * settling_s ? kLostInTime : kLostDifference;
   }
   if (status == Status::kTooManySwitches) {
     reason = kTooManySwitches;

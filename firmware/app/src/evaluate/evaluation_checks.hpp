@@ -43,7 +43,10 @@ Failure failure_of_width(Status status, Distribution distribution) noexcept;
 Failure failure_of_trials(Status status, Stage stage, bool is_exhausted) noexcept;
 
 /// @returns Why a search has no result.
-Failure failure_of_search(Status status, Method method, Stage stage, double duration_s) noexcept;
+///
+/// @param[in] settling_s Of the error; 0 if it is not known yet.
+Failure failure_of_search(Status status, const Settings& settings, Stage stage, double duration_s,
+                          double settling_s) noexcept;
 
 /// @returns Why there is no error system.
 Failure failure_of_model(Status status, const Settings& settings) noexcept;

@@ -343,7 +343,8 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
   // percent_of() of an energy is as sqrt(E) is.
   constexpr double kRounding = 1e-12;
   const double u = sqrt(part.root.squares / static_cast<double>(part.root.count - 1));
-  known.u_percent = u > kRounding * part.root.origin ? results_.percent_of(1.0) * u : 0.0;
+  const bool is_rounding = u <= kRounding * part.root.origin;  // Not where an energy has no root.
+  known.u_percent = is_rounding ? 0.0 : results_.percent_of(1.0) * u;
 }
 
 /// Takes sqrt(E) over the trial's own S, for that of the estimate, while the first pass runs.

@@ -217,17 +217,22 @@ double EvaluationResults::percent_of(double energy) const noexcept {
   return kPercent * sqrt(energy / settings.duration_s) / (device.estimate.sensitivity * limit_mps2);
 }
 
-CoverageInterval EvaluationResults::interval_percent_of(
-    const FigureResults& figure) const noexcept {
-  const CoverageInterval& shortest = figure.uncertainty.shortest;
-  return widened({percent_of(shortest.low), percent_of(shortest.high)},
-                 percent_of(figure.energy_v2s));
+CoverageInterval EvaluationResults::interval_percent_of(const CoverageInterval& energies_v2s,
+                                                        double energy) const noexcept {
+  // A difference of energies may be below 0, and has no root there.
+  const double low = energies_v2s.low > 0.0 ? energies_v2s.low : 0.0;
+  const double high = energies_v2s.high > 0.0 ? energies_v2s.high : 0.0;
+  return widened({percent_of(low), percent_of(high)}, percent_of(energy));
 }
 
-bool EvaluationResults::is_one_sided(const FigureResults& figure) const noexcept {
-  return figure.uncertainty.exists() &&
-         app::is_one_sided(percent_of(figure.energy_v2s), figure.uncertainty.expanded_percent(),
-                           interval_percent_of(figure));
+bool EvaluationResults::is_one_sided(const EnergyUncertainty& known, double energy) const noexcept {
+  if (!known.exists()) {
+    return false;
+  }
+  // Without a U some of the trials have no root.
+  return !is_finite(known.u_percent) ||
+         app::is_one_sided(percent_of(energy), known.expanded_percent(),
+                           interval_percent_of(known.shortest, energy));
 }
 
 double EvaluationResults::rms_error_v() const noexcept {

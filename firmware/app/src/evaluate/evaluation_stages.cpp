@@ -212,7 +212,8 @@ bool Evaluation::begin_search(Stage stage, double duration_s) noexcept {
 
 bool Evaluation::is_well(Status of_search, Stage stage, double duration_s) noexcept {
   if (of_search != Status::kOk) {
-    (void)fail(failure_of_search(of_search, results_.settings.method, stage, duration_s));
+    (void)fail(failure_of_search(of_search, results_.settings, stage, duration_s,
+                                 results_.settling_time.time_s));
   }
   return of_search == Status::kOk;
 }

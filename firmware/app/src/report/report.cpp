@@ -380,8 +380,8 @@ void write_error_system(const EvaluationResults& results, ReportWriter& out) noe
   }
   out.label("Peak of k").general(peak.value, 7).text(" V/(m/s) at ");
   out.fixed(kMicro * peak.time_s, 2).text(" us").line();
-  write_settling_time(settling, out);
-  write_short_time(results.settings.duration_s, settling, out);
+  write_settling_time("5 % settling time", settling, out);
+  write_short_time("the settling time", settling, results, out);
 }
 
 // Maximum energy
@@ -628,13 +628,11 @@ void write_trend(const EvaluationResults& results, ReportWriter& out) noexcept {
   }
 }
 
-/// What the cells suffice for.
-double longest_time_s(const EvaluationResults& results) noexcept {
-  const Settings& settings = results.settings;
-  const bool is_of_trials = results.failure.stage == Stage::kMonteCarlo;
-  const std::size_t cells = is_of_trials ? GridWorkspace::kMaxTrialCells : kMaxCells;
-  const bool is_paper = settings.method == Method::kPaper;
-  return static_cast<double>(cells) * (is_paper ? settings.step_s : grid_cell_s(results.model));
+/// Rounded down to what a user types.
+void write_time(const char* words, double longest_s, TextWriter& out) noexcept {
+  constexpr int kDigits = 4;
+  const int decimals = decimals_of(longest_s, kDigits);
+  out.text(words).general(rounded_down(longest_s, decimals), 10).text(" s");
 }
 
 }  // namespace
@@ -717,10 +715,9 @@ void write_failure(const EvaluationResults& results, TextWriter& out) noexcept {
   if (failure.duration_s > 0.0) {
     out.text(" (T = ").general(failure.duration_s, 10).text(" s");
     if (failure.status == Status::kTooManyCells) {
-      constexpr int kDigits = 4;
-      const double longest_s = longest_time_s(results);
-      const int decimals = decimals_of(longest_s, kDigits);
-      out.text(", at most ").general(rounded_down(longest_s, decimals), 10).text(" s");
+      write_time(", at most ", longest_time_s(results), out);
+    } else if (failure.status == Status::kTooManySwitches) {
+      write_time("; there is room for ", storable_time_s(results), out);
     }
     out.text(")");
   }

@@ -119,7 +119,8 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
   const bool has_u = figure.uncertainty.exists();
   const double percent = results.percent_of(figure.energy_v2s);
   const CoverageInterval interval =
-      has_u ? results.interval_percent_of(figure) : CoverageInterval{};
+      has_u ? results.interval_percent_of(figure.uncertainty.shortest, figure.energy_v2s)
+            : CoverageInterval{};
   return {name,
           is_marked,
           percent,
@@ -131,26 +132,27 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
           interval};
 }
 
-void write_papers_rows(const EvaluationResults& results, bool is_marked,
+/// @returns Whether one has an interval in the place of U.
+bool write_papers_rows(const EvaluationResults& results, bool is_marked,
                        ReportWriter& out) noexcept {
   const double energy = results.energy_v2s();
   const Criterion criterion = results.settings.criterion;
+  bool is_any_one_sided = false;
   if (energy < 0.0) {
-    return;
+    return false;
   }
   if (criterion != Criterion::kInBandError) {
     const EnergyUncertainty& known = results.uncertainty;
-    const bool has_u = known.exists() && is_finite(known.u_percent);
+    const bool has_u = known.exists();
     const bool is_error = criterion == Criterion::kIntegralSquareError;
+    const double percent = results.percent_of(energy);
+    const double expanded = known.expanded_percent();
+    const CoverageInterval interval =
+        has_u ? results.interval_percent_of(known.shortest, energy) : CoverageInterval{};
+    is_any_one_sided = results.is_one_sided(known, energy);
     write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
-               is_marked,
-               results.percent_of(energy),
-               has_u,
-               has_u ? kCoverageFactor * known.u_percent : 0.0,
-               results.has_bound,
-               results.percent_of(results.bound_v2s),
-               false,
-               {}},
+               is_marked, percent, has_u, expanded, results.has_bound,
+               results.percent_of(results.bound_v2s), is_any_one_sided, interval},
               out);
   }
   if (results.ideal.exists() &&
@@ -166,6 +168,7 @@ void write_papers_rows(const EvaluationResults& results, bool is_marked,
                {}},
               out);
   }
+  return is_any_one_sided;
 }
 
 void write_refusal(const char* name, const FigureResults& figure, ReportWriter& out) noexcept {
@@ -297,8 +300,8 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   out.cell(kNumberWidth).text("found");
   out.cell(kExpandedWidth).text("U (k = 2)");
   out.cell(kNumberWidth).text("none exceeds").line();
-  const bool is_one_sided = write_band_rows(results, marks, out);
-  write_papers_rows(results, marks, out);
+  const bool is_band_one_sided = write_band_rows(results, marks, out);
+  const bool is_one_sided = write_papers_rows(results, marks, out) || is_band_one_sided;
   if (!results.band.exists()) {
     write_refusal("in band", results.band, out);
   } else if (!results.matched.exists()) {
@@ -327,8 +330,9 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   }
 }
 
-void write_settling_time(const SettlingTime& settling, ReportWriter& out) noexcept {
-  out.label("5 % settling time");
+void write_settling_time(const char* label, const SettlingTime& settling,
+                         ReportWriter& out) noexcept {
+  out.label(label);
   if (!settling.found) {
     out.text("beyond ").general(kMilli * settling.time_s, 7).text(" ms").line();
   } else {
@@ -336,20 +340,31 @@ void write_settling_time(const SettlingTime& settling, ReportWriter& out) noexce
   }
 }
 
-void write_short_time(double duration_s, const SettlingTime& settling, ReportWriter& out) noexcept {
+void write_short_time(const char* name, const SettlingTime& settling,
+                      const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double duration_s = results.settings.duration_s;
   if (!(duration_s < settling.time_s)) {
     return;
   }
   const bool is_much = duration_s < kMuchShorter * settling.time_s;
   out.part(is_much ? ReportPart::kWarning : ReportPart::kNote)
-      .text(is_much ? "  WARNING: T is much shorter" : "  Note: T is shorter")
-      .text(
-          " than the settling time, so the error has not developed within\n"
-          "  T: give a T of ");
+      .text(is_much ? "  WARNING: T is much shorter than " : "  Note: T is shorter than ")
+      .text(name)
+      .text(", so the error has not developed within\n  T");
   constexpr int kDigits = 3;
-  const double least_ms = kMilli * settling.time_s;
-  const int decimals = decimals_of(least_ms, kDigits);
-  out.fixed(rounded_up(least_ms, decimals), decimals).text(" ms or more.\n");
+  if (is_reachable(settling.time_s, results)) {
+    const double least_ms = kMilli * settling.time_s;
+    const int decimals = decimals_of(least_ms, kDigits);
+    out.text(": give a T of ").fixed(rounded_up(least_ms, decimals), decimals);
+    out.text(" ms or more.\n");
+    return;
+  }
+  const double cells_ms = kMilli * longest_time_s(results);
+  const double storable_ms = kMilli * storable_time_s(results);
+  const double most_ms = cells_ms < storable_ms ? cells_ms : storable_ms;
+  const int decimals = decimals_of(most_ms, kDigits);
+  out.text(", and no T that can be searched is as long: there is room for ");
+  out.fixed(rounded_down(most_ms, decimals), decimals).text(" ms.\n");
 }
 
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept {
@@ -363,8 +378,8 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     // A T that is somewhat shorter is what the paper has, too.
     const SettlingTime& settling = results.band_settling;
     if (results.settings.duration_s < kMuchShorter * settling.time_s) {
-      write_settling_time(settling, out);
-      write_short_time(results.settings.duration_s, settling, out);
+      write_settling_time("5 % settling, in band", settling, out);
+      write_short_time("that of the in-band error", settling, results, out);
     }
   }
   if (results.matched.exists()) {
@@ -449,7 +464,7 @@ void write_rough_trials(std::uint32_t trials, float part, ReportWriter& out) noe
   out.general(kPercent * static_cast<double>(part), 2).text(" % of u(E)").line();
   if (part > kMostRough) {
     out.part(ReportPart::kWarning)
-        .text("  WARNING: u(E) may be off in its second digit. Give a shorter T.\n");
+        .text("  WARNING: u(E) may be off in its second digit. Use its first.\n");
   }
 }
 

@@ -23,8 +23,12 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
                    ReportWriter& out) noexcept;
 
 /// "5 % settling time", and what a T shorter than that is worth.
-void write_settling_time(const SettlingTime& settling, ReportWriter& out) noexcept;
-void write_short_time(double duration_s, const SettlingTime& settling, ReportWriter& out) noexcept;
+///
+/// @param[in] name What the settling time is called in the middle of a sentence.
+void write_settling_time(const char* label, const SettlingTime& settling,
+                         ReportWriter& out) noexcept;
+void write_short_time(const char* name, const SettlingTime& settling,
+                      const EvaluationResults& results, ReportWriter& out) noexcept;
 
 /// The in-band errors, in V^2 s and with their signals.
 void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept;

@@ -405,7 +405,8 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.pair("interval", known.symmetric.low, known.symmetric.high);
   json.pair("shortest", known.shortest.low, known.shortest.high);
   json.integer("redrawn", known.redraws);
-  const bool has_root = results.energy_v2s() >= 0.0;  // An energy difference may be below 0.
+  // An energy difference may be below 0, and that of a trial, too.
+  const bool has_root = results.energy_v2s() >= 0.0 && is_finite(known.u_percent);
   write_number_or_null("u_percent", has_root, known.u_percent, json);
   write_number_or_null("U_percent", has_root, kCoverageFactor * known.u_percent, json);
   write_disagreements(known.guard, json);
@@ -427,7 +428,7 @@ void write_warning(const char* about, const char* words, double least_s,
 void write_if_due(Warning warning, const EvaluationResults& results, const ReportContext& context,
                   JsonWriter& json) noexcept {
   if (holds(warning, results, context)) {
-    write_warning(about(warning), words_of(warning), least_time_s(warning, results), json);
+    write_warning(about(warning), words_of(warning, results), least_time_s(warning, results), json);
   }
 }
 

@@ -4,11 +4,15 @@
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
+#include "emax/energy/grid_workspace.hpp"
 
 namespace emax::app {
 namespace {
 
 constexpr std::uint32_t kOnePercent = 100;
+// Switching times that a signal by half periods may need; its ends may take a few more.
+constexpr double kStorable = static_cast<double>(kMaxSwitches) - 8.0;
 
 bool fit_warns(const EvaluationResults& results) noexcept {
   const WlspFit& fit = results.fit.result();
@@ -22,8 +26,31 @@ bool has_few_trials(const EvaluationResults& results) noexcept {
          (rule == 0 || results.trials.result.trials < rule);
 }
 
+/// The settling time of the error that a warning of a short T is about; 0 for all others.
+double settling_time_s(Warning warning, const EvaluationResults& results) noexcept {
+  if (warning == Warning::kShortTime) {
+    return results.settling_time.time_s;
+  }
+  const bool is_other = results.settings.criterion != Criterion::kInBandError;
+  const bool has_row = is_other && results.band.exists();
+  return warning == Warning::kShortInBand && has_row ? results.band_settling.time_s : 0.0;
+}
+
 bool is_short(Warning warning, const EvaluationResults& results) noexcept {
-  return results.settings.duration_s < kMuchShorter * least_time_s(warning, results);
+  return results.settings.duration_s < kMuchShorter * settling_time_s(warning, results);
+}
+
+const char* words_of_short_time(Warning warning, const EvaluationResults& results) noexcept {
+  const bool is_in_band = warning == Warning::kShortInBand;
+  if (!is_reachable(settling_time_s(warning, results), results)) {
+    return is_in_band ? "T is much shorter than the settling time of the in-band error, and no T "
+                        "that can be searched is as long"
+                      : "T is much shorter than the settling time, and no T that can be searched "
+                        "is as long";
+  }
+  return is_in_band ? "T is much shorter than the settling time of the in-band error; give at "
+                      "least that time"
+                    : "T is much shorter than the settling time; give at least the settling time";
 }
 
 bool is_low(const EvaluationResults& results) noexcept {
@@ -180,12 +207,30 @@ ReportSection place_of(Warning warning) noexcept {
 }
 
 double least_time_s(Warning warning, const EvaluationResults& results) noexcept {
-  if (warning == Warning::kShortTime) {
-    return results.settling_time.time_s;
-  }
-  const bool is_other = results.settings.criterion != Criterion::kInBandError;
-  const bool has_row = is_other && results.band.exists();
-  return warning == Warning::kShortInBand && has_row ? results.band_settling.time_s : 0.0;
+  const double settling_s = settling_time_s(warning, results);
+  return is_reachable(settling_s, results) ? settling_s : 0.0;
+}
+
+double longest_time_s(const EvaluationResults& results) noexcept {
+  const Settings& settings = results.settings;
+  const bool is_of_trials = results.failure.stage == Stage::kMonteCarlo;
+  const std::size_t cells = is_of_trials ? GridWorkspace::kMaxTrialCells : kMaxCells;
+  const bool is_paper = settings.method == Method::kPaper;
+  return static_cast<double>(cells) * (is_paper ? settings.step_s : grid_cell_s(results.model));
+}
+
+double storable_time_s(const EvaluationResults& results) noexcept {
+  constexpr double kHalfPeriods = 2.0;
+  return kStorable / (kHalfPeriods * results.model.grid_hz());
+}
+
+bool is_reachable(double duration_s, const EvaluationResults& results) noexcept {
+  // It rings down to 5 % of the peak in 3 time constants, or a little more where it began as more.
+  constexpr double kTimeConstants = 4.0;
+  const Accelerometer& device = results.device.estimate;
+  const double turns = device.natural_frequency_hz * duration_s;
+  const bool rings = kTwoPi * turns * device.damping < kTimeConstants;
+  return duration_s <= longest_time_s(results) && !(rings && 2.0 * turns > kStorable);
 }
 
 std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
@@ -199,7 +244,7 @@ std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
   return kWlspParameters;
 }
 
-const char* words_of(Warning warning) noexcept {
+const char* words_of(Warning warning, const EvaluationResults& results) noexcept {
   switch (warning) {
     case Warning::kFit:
       return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
@@ -217,7 +262,7 @@ const char* words_of(Warning warning) noexcept {
       return "f0 is below the filter's cutoff; check that the frequencies are in Hz";
     case Warning::kShortTime:
     case Warning::kShortInBand:
-      return "T is much shorter than the settling time; give at least the settling time";
+      return words_of_short_time(warning, results);
     case Warning::kFewTrials:
       return "fewer trials than rule (3), 1e4/(1 - p), asks for";
     case Warning::kNotStable:
@@ -235,7 +280,7 @@ const char* words_of(Warning warning) noexcept {
              "units";
     case Warning::kRough:
       return "interpolated trials are off by more than 1 % of u(E), so it may be off in its "
-             "second digit; give a shorter T";
+             "second digit; use its first";
     case Warning::kEnded:
     case Warning::kDataSheet:
     case Warning::kChange:

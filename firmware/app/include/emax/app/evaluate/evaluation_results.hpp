@@ -90,7 +90,9 @@ struct EnergyUncertainty {
   double u_v2s = 0.0;
   CoverageInterval symmetric;  ///< In V^2 s.
   CoverageInterval shortest;
-  double u_percent = 0.0;  ///< Standard deviation of 100 sqrt(E/T)/(S a), S being each trial's.
+  /// Standard deviation of 100 sqrt(E/T)/(S a), S being each trial's; not a number where a trial's
+  /// energy difference is below 0.
+  double u_percent = 0.0;
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
   /// @returns U of that percentage; 0 if there is none.
@@ -263,9 +265,13 @@ struct EvaluationResults {
   double percent_of(double energy_v2s) const noexcept;
   /// @returns The shortest interval of a figure that has an uncertainty, widened to hold the
   /// figure, in percent as by `percent_of()`.
-  CoverageInterval interval_percent_of(const FigureResults& figure) const noexcept;
+  CoverageInterval interval_percent_of(const CoverageInterval& energies_v2s,
+                                       double energy_v2s) const noexcept;
   /// @returns Whether that interval has to stand in the place of +-U.
-  bool is_one_sided(const FigureResults& figure) const noexcept;
+  bool is_one_sided(const EnergyUncertainty& known, double energy_v2s) const noexcept;
+  bool is_one_sided(const FigureResults& figure) const noexcept {
+    return is_one_sided(figure.uncertainty, figure.energy_v2s);
+  }
   /// @returns sqrt(E/T) in V; not a number for an energy difference below 0.
   double rms_error_v() const noexcept;
   /// @returns The output y(t) for the signal found with its limit a, in V.

@@ -54,14 +54,26 @@ const char* words_of_contradiction(Warning warning) noexcept;
 /// "measurement".
 const char* about(Warning warning) noexcept;
 
-/// @returns The T in s that a warning of a short one asks for, the settling time; 0 for all others.
+/// @returns The T in s that a warning of a short one asks for, the settling time; 0 for all others,
+/// and where no search reaches so far.
 double least_time_s(Warning warning, const EvaluationResults& results) noexcept;
+
+/// @returns The longest T in s that the cells suffice for.
+double longest_time_s(const EvaluationResults& results) noexcept;
+
+/// @returns A T in s for which the switching times have room, by whatever half period of sensor or
+/// filter the signal switches.
+double storable_time_s(const EvaluationResults& results) noexcept;
+
+/// @returns Whether a search can take so long a T: its cells suffice, and its switching times too
+/// if the resonance still rings then, for the signal follows that.
+bool is_reachable(double duration_s, const EvaluationResults& results) noexcept;
 
 /// @returns Where in the report it is said at length.
 ReportSection place_of(Warning warning) noexcept;
 
-/// @returns One line. Never null.
-const char* words_of(Warning warning) noexcept;
+/// @returns One line; a `least_time_s()` belongs behind it. Never null.
+const char* words_of(Warning warning, const EvaluationResults& results) noexcept;
 
 /// @returns The number of the parameter (0 is S, 1 is f0, 2 is beta) whose u by formula and u by
 /// draws disagree; 3 if none does.
