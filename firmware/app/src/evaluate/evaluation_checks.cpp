@@ -48,9 +48,6 @@ constexpr char kTooManySwitches[] =
 constexpr char kLostInTime[] =
     "Within so short a T both outputs are so small that rounding hides their energies; take a "
     "longer time.";
-constexpr char kLostDifference[] =
-    "The energies of sensor and filter are so nearly the same that rounding hides their "
-    "difference; take another cutoff or order.";
 constexpr char kNoDevice[] =
     "There is no accepted device to go on with; start with points or parameters.";
 constexpr char kOtherSettings[] =
@@ -171,8 +168,10 @@ Failure failure_of_search(Status status, const Settings& settings, Stage stage, 
   if (status == Status::kTooManyCells) {
     reason = settings.method == Method::kPaper ? kTooManyCellsPaper : kTooManyCellsBest;
   }
-  if (status == Status::kLostDigits && settings.criterion == Criterion::kEnergyDifference) {
-    reason = duration_s < kMuchShorter * settling_s ? kLostInTime : kLostDifference;
+  // Unlike an error, a difference of energies is not hidden by the outputs that cancel.
+  if (status == Status::kLostDigits && settings.criterion == Criterion::kEnergyDifference &&
+      duration_s < kMuchShorter * settling_s) {
+    reason = kLostInTime;
   }
   if (status == Status::kTooManySwitches) {
     reason = kTooManySwitches;

@@ -41,16 +41,13 @@ bool is_short(Warning warning, const EvaluationResults& results) noexcept {
 }
 
 const char* words_of_short_time(Warning warning, const EvaluationResults& results) noexcept {
-  const bool is_in_band = warning == Warning::kShortInBand;
   if (!is_reachable(settling_time_s(warning, results), results)) {
-    return is_in_band ? "T is much shorter than the settling time of the in-band error, and no T "
-                        "that can be searched is as long"
-                      : "T is much shorter than the settling time, and no T that can be searched "
-                        "is as long";
+    return "T is much shorter than the settling time, and no T that can be searched is as long";
   }
-  return is_in_band ? "T is much shorter than the settling time of the in-band error; give at "
-                      "least that time"
-                    : "T is much shorter than the settling time; give at least the settling time";
+  return warning == Warning::kShortInBand
+             ? "T is much shorter than the settling time of the in-band error; give at least that "
+               "time"
+             : "T is much shorter than the settling time; give at least the settling time";
 }
 
 bool is_low(const EvaluationResults& results) noexcept {
