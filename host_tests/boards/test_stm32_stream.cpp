@@ -276,6 +276,7 @@ TEST(StreamStart, MeasuresAConversionWhereItsClockIsInDoubt) {
   bench.chip().set_conversion_us(4);
   bench.chip().hold_regulator(true);
   EXPECT_EQ(bench.stream().start({1000, 1000}), Status::kHardwareFault);
+  EXPECT_EQ(bench.stream().conversion_cycles(), 0U);
 }
 
 TEST(StreamStart, ChecksTheInputsWithoutAStream) {

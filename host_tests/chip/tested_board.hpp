@@ -29,6 +29,7 @@ struct NucleoG474re {
   /// 1e-3 of it through to the reference.
   static constexpr double kReconstruction_hz = 12500.0;
   static constexpr const char* kCountsTable = "board counts";
+  static constexpr const char* kReportTable = "report";
   static void prepare(Chip&) {}
   static void prepare_to_count(Chip&) {}
   static bool led(const Chip& chip) { return chip.ports[0]->output(5); }
@@ -58,6 +59,7 @@ struct NucleoH743zi2 {
   static constexpr double kLatencyFrames = 513.0;
   static constexpr double kReconstruction_hz = 25000.0;  // At 100 kS/s.
   static constexpr const char* kCountsTable = "board counts of the other board";
+  static constexpr const char* kReportTable = "report of the other board";
   /// What takes long is polled for, and costs a test real time: sectors, and linear calibration.
   static void prepare(Chip& chip) {
     chip.flash.set_erase_time(2e-3);

@@ -37,6 +37,7 @@ TEST(Instrument, SaysWhatItIs) {
   EXPECT_EQ(i.ask("*ESR?"), "128");  // Power on.
   EXPECT_EQ(i.ask("*TST?"), "0");
   EXPECT_EQ(i.ask("DIAG:MEM?"), "0,0,0");
+  EXPECT_EQ(i.ask("DIAG:CONV?"), "9.91E37");
   EXPECT_EQ(i.ask("SYST:PROG?"), "100,\"idle\"");
   EXPECT_EQ(i.errors(), "");
 }

@@ -1,6 +1,8 @@
 // Commands of IEEE 488.2, and what starts work.
 #include "instrument_commands.hpp"
 
+#include <limits>
+
 #include "emax/app/base/version.hpp"
 #include "emax/app/instrument/self_test.hpp"
 #include "emax/base/elementary.hpp"
@@ -76,6 +78,15 @@ void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
     failed = i.board().check_hardware();
   }
   call.answer().integer(failed);
+}
+
+void InstrumentCommands::conversion(Instrument& i, Call& call) noexcept {
+  const auto measure = i.board().measure_conversion_s;
+  if (measure != nullptr && i.is_working()) {
+    call.wait();
+    return;
+  }
+  call.answer().number(measure != nullptr ? measure() : std::numeric_limits<double>::quiet_NaN());
 }
 
 namespace {

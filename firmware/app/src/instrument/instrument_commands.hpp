@@ -150,6 +150,7 @@ struct InstrumentCommands {
   /// Loopback, and then ratio and skew as settings.
   static void acquire_corrections(Instrument& i, Call& call) noexcept;
   static void memory(Instrument& i, Call& call) noexcept;
+  static void conversion(Instrument& i, Call& call) noexcept;
 };
 
 }  // namespace emax::app

@@ -118,6 +118,7 @@ inline constexpr scpi::Command<Instrument> kUncertainty[] = {
 
     {"DIAGnostic:RANDom", kQuery, "<n>", "The next n random numbers, from the seed set", kPlain, C::random},
     {"DIAGnostic:MEMory", kQuery, "", "static_bytes,stack_limit,stack_used", kPlain, C::memory},
+    {"DIAGnostic:CONVersion", kQuery, "", "What one result of the converters takes, s, measured now; 9.91E37 where the board does not", kPlain, C::conversion},
 };
 
 inline constexpr scpi::Command<Instrument> kLoopback[] = {

@@ -9,7 +9,6 @@
 #include "emax/board/g474_chain.hpp"
 #include "emax/board/g474_flash_store.hpp"
 #include "emax/board/registers.hpp"
-#include "emax/board/reset_cause.hpp"
 #include "emax/board/stm32_board.hpp"
 #include "emax/board/stm32_clocks.hpp"
 
@@ -63,12 +62,6 @@ void start_pins() noexcept {
                    kLedPinMode | kAnalogPins;
 }
 
-bool take_watchdog_cause() noexcept {
-  const bool is_told_by_chip = (reg(kResetCause) & kByWatchdog) != 0;
-  reg(kResetCause) |= kForgetCause;
-  return take_watchdog_reset() || is_told_by_chip;
-}
-
 // Not the watchdog: the crystal has stopped, or the flash memory has read what it cannot correct.
 void on_non_maskable() {
   if (take_lost_clock() || store.take_read_error()) {
@@ -98,7 +91,8 @@ Status start_board() noexcept {
   reg(kDebugControl) |= kDebugInSleep;
   reg(kDebugFreeze) |= kTimersAndWatchdog;
   drivers.serial = read_unique_id(kUniqueId);
-  start_drivers(clocks, take_watchdog_cause(), kLpuart1Interrupt, kDma1Channel2Interrupt);
+  start_drivers(clocks, take_watchdog_cause(kResetCause, kByWatchdog, kForgetCause),
+                kLpuart1Interrupt, kDma1Channel2Interrupt);
   return clocks.is_exact ? Status::kOk : Status::kHardwareFault;
 }
 

@@ -55,10 +55,6 @@ constexpr std::uint32_t kNormalRange = 1U << 8;
 constexpr std::uint32_t kMostCrystal_us = 100'000;
 constexpr std::uint32_t kMost_us = 10'000;
 
-bool is_set(std::uintptr_t address, std::uint32_t bits, std::uint32_t most_us) noexcept {
-  return become(address, bits, bits, most_us);
-}
-
 void switch_to(std::uint32_t source) noexcept {
   reg(kConfiguration) = (reg(kConfiguration) & ~kSwitch) | source;
 }
@@ -136,11 +132,7 @@ Clocks start_clocks() noexcept {
 }
 
 bool take_crystal_lost() noexcept {
-  if ((reg(kInterruptFlags) & kCrystalLost) == 0) {
-    return false;
-  }
-  reg(kInterruptClear) = kCrystalLost;
-  return true;
+  return take_flag(kInterruptFlags, kInterruptClear, kCrystalLost);
 }
 
 Clocks restart_clocks() noexcept {

@@ -20,9 +20,6 @@ constexpr std::uintptr_t kOptions = kFlash + 0x20;
 constexpr std::uint32_t kDataCache = 1U << 10;
 constexpr std::uint32_t kDataCacheReset = 1U << 12;
 
-constexpr std::uint32_t kFirstKey = 0x45670123;
-constexpr std::uint32_t kSecondKey = 0xCDEF89AB;
-
 constexpr std::uint32_t kDone = 1U << 0;
 constexpr std::uint32_t kErrors = 0xC3FA;
 constexpr std::uint32_t kBusy = 1U << 16;

@@ -12,7 +12,6 @@
 #include "emax/board/log_store.hpp"
 #include "emax/board/register_bits.hpp"
 #include "emax/board/registers.hpp"
-#include "emax/board/reset_cause.hpp"
 #include "emax/board/stm32_board.hpp"
 #include "emax/board/stm32_clocks.hpp"
 
@@ -85,12 +84,6 @@ void start_pins() noexcept {
   set_mode(kGpioC, 0, 3);
 }
 
-bool take_watchdog_cause() noexcept {
-  const bool is_told_by_chip = (reg(kResetCause) & kByWatchdog) != 0;
-  reg(kResetCause) |= kForgetCause;
-  return take_watchdog_reset() || is_told_by_chip;
-}
-
 // @returns Whether the chip is the one that all this was written for.
 bool adapt_to_chip() noexcept {
   const std::uint32_t identity = reg(kDebug);
@@ -133,7 +126,8 @@ Status start_board() noexcept {
   reg(kDebugFreezeTimers) |= kTimers;
   reg(kDebugFreezeWatchdog) |= kIndependentWatchdog;
   drivers.serial = read_unique_id(kUniqueId);
-  start_drivers(clocks, take_watchdog_cause(), kUsart3Interrupt, kDma1Stream1Interrupt);
+  start_drivers(clocks, take_watchdog_cause(kResetCause, kByWatchdog, kForgetCause),
+                kUsart3Interrupt, kDma1Stream1Interrupt);
   // Here, where nobody waits for an answer: it may have to erase.
   (void)store.start();
   return clocks.is_exact ? Status::kOk : Status::kHardwareFault;

@@ -85,10 +85,6 @@ constexpr std::uint32_t kConsole_hz = 100'000'000;
 constexpr std::uint32_t kMostCrystal_us = 100'000;
 constexpr std::uint32_t kMost_us = 10'000;
 
-bool is_set(std::uintptr_t address, std::uint32_t bits, std::uint32_t most_us) noexcept {
-  return become(address, bits, bits, most_us);
-}
-
 // All that the board uses. Timers count the buses' clock until these are divided.
 void start_peripheral_clocks() noexcept {
   switch_on(kAhb1Enable, 1U << 0 | 1U << 5);                                // DMA1, ADC1 and 2.
@@ -176,11 +172,7 @@ Clocks start_clocks() noexcept {
 }
 
 bool take_crystal_lost() noexcept {
-  if ((reg(kInterruptFlags) & kCrystalLost) == 0) {
-    return false;
-  }
-  reg(kInterruptClear) = kCrystalLost;
-  return true;
+  return take_flag(kInterruptFlags, kInterruptClear, kCrystalLost);
 }
 
 Clocks restart_clocks() noexcept { return use_internal(); }

@@ -19,9 +19,6 @@ constexpr std::uintptr_t kControl = kFlash + 0x10C;
 constexpr std::uintptr_t kStatus = kFlash + 0x110;
 constexpr std::uintptr_t kClear = kFlash + 0x114;
 
-constexpr std::uint32_t kFirstKey = 0x45670123;
-constexpr std::uint32_t kSecondKey = 0xCDEF89AB;
-
 // Being worked on, or waiting in the queue.
 constexpr std::uint32_t kBusy = 1U << 0 | 1U << 1 | 1U << 2;
 // Protected, out of order, twice, incomplete, failed, and not to be read.

@@ -123,6 +123,7 @@ bool Stm32AdcPair::measure() noexcept {
 }
 
 Status Stm32AdcPair::prepare() noexcept {
+  conversion_cycles_ = 0;
   if (!stop()) {
     return Status::kHardwareFault;
   }

@@ -1,8 +1,12 @@
 // From the drivers to the instrument, the same for all boards with an STM32.
 #include "emax/board/stm32_board.hpp"
 
+#include <limits>
+
 #include "emax/board/board.hpp"
 #include "emax/board/fault_report.hpp"
+#include "emax/board/registers.hpp"
+#include "emax/board/reset_cause.hpp"
 
 namespace emax::board {
 namespace {
@@ -31,6 +35,16 @@ void set_clocks(const Clocks& clocks) noexcept {
 std::uint32_t check_hardware() noexcept {
   const bool is_right = drivers.stream.running() || drivers.stream.check_inputs() == Status::kOk;
   return is_right ? 0 : app::kFirstBoardCheck;
+}
+
+// By cycles, which are known as well as the crystal.
+double measure_conversion_s() noexcept {
+  (void)drivers.stream.check_inputs();
+  const std::uint32_t cycles = drivers.stream.conversion_cycles();
+  if (cycles == 0 || !drivers.is_clock_exact.load(std::memory_order_relaxed)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return static_cast<double>(cycles) / EMAX_BOARD_CLOCK_HZ;
 }
 
 }  // namespace
@@ -78,9 +92,16 @@ app::SweepSettings bench_of_board() noexcept {
 
 const app::Board& about() noexcept {
   static constexpr app::Board kAbout = {
-      EMAX_BOARD_NAME, drivers.serial.data(), nullptr,       nullptr,
-      nullptr,         bench_of_board,        check_hardware};
+      EMAX_BOARD_NAME, drivers.serial.data(), nullptr,        nullptr,
+      nullptr,         bench_of_board,        check_hardware, measure_conversion_s};
   return kAbout;
+}
+
+bool take_watchdog_cause(std::uintptr_t cause, std::uint32_t by_watchdog,
+                         std::uint32_t forget) noexcept {
+  const bool is_told_by_chip = (reg(cause) & by_watchdog) != 0;
+  reg(cause) |= forget;
+  return take_watchdog_reset() || is_told_by_chip;
 }
 
 bool sleep_until_byte() noexcept {

@@ -48,6 +48,9 @@ struct Board {
   /// What *TST? answers if all else is right: 0, or a number of the board's own, from
   /// kFirstBoardCheck on. Called while nothing runs. Null where there is nothing to check.
   std::uint32_t (*check_hardware)() noexcept = nullptr;
+  /// What DIAGnostic:CONVersion? answers: measures how long a result of the converters takes, in
+  /// seconds; not a number if it cannot. Called while nothing runs. Null where nobody measures it.
+  double (*measure_conversion_s)() noexcept = nullptr;
 };
 
 inline constexpr std::uint32_t kFirstBoardCheck = 901;

@@ -1,9 +1,13 @@
-// How bytes become what a flash memory programs.
+// What the flash memories of STM32 have in common.
 #pragma once
 
 #include <cstdint>
 
 namespace emax::board {
+
+/// What unlocks the memory, one after the other.
+inline constexpr std::uint32_t kFirstKey = 0x45670123;
+inline constexpr std::uint32_t kSecondKey = 0xCDEF89AB;
 
 /// @param[in] bytes Four of them, the lowest first.
 constexpr std::uint32_t word_of(const std::uint8_t* bytes) noexcept {

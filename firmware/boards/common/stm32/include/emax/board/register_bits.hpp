@@ -27,4 +27,19 @@ inline bool become(std::uintptr_t address, std::uint32_t which, std::uint32_t bi
   return wait_for([=] { return (reg(address) & which) == bits; }, most_us);
 }
 
+/// Likewise until they are set.
+inline bool is_set(std::uintptr_t address, std::uint32_t bits, std::uint32_t most_us) noexcept {
+  return become(address, bits, bits, most_us);
+}
+
+/// @param[in] clear Where the flag is cleared, by the same bit.
+/// @returns Whether the flag was there; it is cleared then.
+inline bool take_flag(std::uintptr_t flags, std::uintptr_t clear, std::uint32_t flag) noexcept {
+  if ((reg(flags) & flag) == 0) {
+    return false;
+  }
+  reg(clear) = flag;
+  return true;
+}
+
 }  // namespace emax::board

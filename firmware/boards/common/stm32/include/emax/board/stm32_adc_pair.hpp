@@ -49,7 +49,7 @@ class Stm32AdcPair {
   /// Where DMA fetches both results.
   std::uintptr_t data_register() const noexcept;
 
-  /// Switches both on and calibrates them, which takes some 0.3 ms on an STM32G4 and some 20 ms on
+  /// Switches both on and calibrates them, which takes some 0.3 ms on an STM32G4 and some 13 ms on
   /// an STM32H7. Their DMA does not run.
   /// @returns kOk, or kHardwareFault if one of them does not get ready, or a result takes longer
   /// than there is time for; `stop()` follows.
@@ -64,7 +64,7 @@ class Stm32AdcPair {
   /// @returns True if a result was not fetched in time.
   bool has_overrun() const noexcept;
 
-  /// @returns What one result took at the last start, in cycles of the processor; 0 if that is not
+  /// @returns What one result took at the last start, in cycles of the processor; 0 if that was not
   /// measured.
   std::uint32_t conversion_cycles() const noexcept { return conversion_cycles_; }
 

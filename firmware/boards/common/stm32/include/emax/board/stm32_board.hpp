@@ -62,6 +62,12 @@ constexpr VectorTable make_vectors(InterruptHandler non_maskable, unsigned conso
   return table;
 }
 
+/// @param[in] cause The register that tells what the last reset came of: which bit is the
+/// independent watchdog's, and which one forgets.
+/// @returns Whether it came of either watchdog; the next call says no.
+bool take_watchdog_cause(std::uintptr_t cause, std::uint32_t by_watchdog,
+                         std::uint32_t forget) noexcept;
+
 /// Starts the drivers with these clocks: the pins are as they should be.
 ///
 /// @param[in] caused_reset That of the watchdog.
