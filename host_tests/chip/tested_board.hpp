@@ -29,7 +29,6 @@ struct NucleoG474re {
   /// 1e-3 of it through to the reference.
   static constexpr double kReconstruction_hz = 12500.0;
   static constexpr const char* kCountsTable = "board counts";
-  static constexpr const char* kReportTable = "report";
   static void prepare(Chip&) {}
   static void prepare_to_count(Chip&) {}
   static bool led(const Chip& chip) { return chip.ports[0]->output(5); }
