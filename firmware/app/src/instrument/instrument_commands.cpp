@@ -81,12 +81,15 @@ void InstrumentCommands::self_test(Instrument& i, Call& call) noexcept {
 }
 
 void InstrumentCommands::conversion(Instrument& i, Call& call) noexcept {
-  const auto measure = i.board().measure_conversion_s;
-  if (measure != nullptr && i.is_working()) {
-    call.wait();
-    return;
+  double conversion_s = std::numeric_limits<double>::quiet_NaN();
+  if (i.board().measure_conversion_s != nullptr) {
+    if (i.is_working()) {
+      call.wait();
+      return;
+    }
+    conversion_s = i.board().measure_conversion_s();
   }
-  call.answer().number(measure != nullptr ? measure() : std::numeric_limits<double>::quiet_NaN());
+  call.answer().number(conversion_s);
 }
 
 namespace {
