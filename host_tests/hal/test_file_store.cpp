@@ -147,7 +147,7 @@ TEST(FileStore, RefusesWhatItCannotUse) {
                                 std::string(100, '\0') + "x",
                                 std::string(65 * 4096, '\0'),
                                 std::string(70 * 4096, '\0'),
-                                "emax store 3\n" + std::string(65 * 4096 - 13, '\0'),
+                                "emax store of today\n" + std::string(65 * 4096 - 20, '\0'),
                                 std::string(4096, '\0') + std::string(65 * 4096, '\xFF')};
   for (const std::string& text : theirs) {
     std::ofstream(path, std::ios::binary) << text;
@@ -169,6 +169,33 @@ TEST(FileStore, RefusesWhatItCannotUse) {
   ASSERT_EQ(unlink(path.c_str()), 0);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
   EXPECT_EQ(file.open(path).status, desk::ExitStatus::kBadInput) << "a pipe: no waiting";
+}
+
+// The page says what the file is, and nothing else: the records are whole without it.
+TEST(FileStore, AFlippedBitOfTheTitlePageLocksNothingOut) {
+  const Directory directory;
+  const std::array<std::uint8_t, 4> record = {1, 2, 3, 4};
+  {
+    FileBytes file;
+    ASSERT_FALSE(file.open(directory.file()));
+    EXPECT_FALSE(file.had_damaged_title());
+    FileStore store(file);
+    ASSERT_EQ(store.write(5, record), Status::kOk);
+  }
+  const std::string whole = text_of(directory.file());
+  for (std::size_t bit = 0; bit < 8U * 4096U; bit += bit < 8U * 13U ? 1 : 3001) {
+    std::string damaged = whole;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    std::ofstream(directory.file(), std::ios::binary) << damaged;
+    FileBytes file;
+    ASSERT_FALSE(file.open(directory.file())) << bit;
+    EXPECT_TRUE(file.had_damaged_title()) << bit;
+    FileStore store(file);
+    std::array<std::uint8_t, 4> found = {};
+    EXPECT_EQ(store.read(5, found), Status::kOk) << bit;
+    EXPECT_EQ(found, record) << bit;
+    EXPECT_EQ(text_of(directory.file()), whole) << "mended: " << bit;
+  }
 }
 
 TEST(FileStore, SaysThatAFileIsOfAnEarlierVersion) {

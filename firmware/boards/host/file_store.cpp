@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -24,7 +25,8 @@ constexpr const char* kExpectation = "expected a file that --store has made, or 
 
 using Page = std::array<std::uint8_t, kPageBytes>;
 
-// With slots of 4096 bytes, too short for the settings of a PC.
+// With slots of 4096 bytes, too short for the settings of a PC. The title of a later version has to
+// differ from this one in more than kMostFlippedBits.
 constexpr char kFirstTitle[] = "emax store 1\n";
 constexpr char kTitle[] = "emax store 2\n";
 constexpr std::size_t kTitleBytes = sizeof(kTitle) - 1;
@@ -33,6 +35,18 @@ Page title_page() noexcept {
   Page page = {};
   std::copy_n(kTitle, kTitleBytes, page.begin());
   return page;
+}
+
+// The title has 46 bits that are set, so a page of zeros is farther off, and so is that of anything
+// else. A file of the version before has another size.
+constexpr std::size_t kMostFlippedBits = 8;
+
+std::size_t differing_bits(const Page& a, const Page& b) noexcept {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    count += std::bitset<8>(static_cast<unsigned>(a[i] ^ b[i])).count();
+  }
+  return count;
 }
 
 // As pread() and pwrite(), but all of it.
@@ -163,8 +177,12 @@ desk::Problem FileBytes::take_over(const std::string& path) {
   if (is_read && std::equal(kFirstTitle, kFirstTitle + kTitleBytes, page.begin())) {
     return refused(path, "a store of an earlier version");
   }
-  if (size != kFileBytes || !is_read || page != title_page()) {
+  if (size != kFileBytes || !is_read || differing_bits(page, title_page()) > kMostFlippedBits) {
     return refused(path, "something else, or damaged");
+  }
+  had_damaged_title_ = page != title_page();
+  if (had_damaged_title_ && (!write_at(file_, 0, title_page()) || fsync(file_) != 0)) {
+    return desk::fault("--store: " + desk::printable(path) + ": " + std::strerror(errno));
   }
   return {};
 }

@@ -57,9 +57,13 @@ class FileBytes final : public StoreBytes {
 
   /// Opens the file, or makes a new one in which nothing is stored. Once.
   ///
+  /// A few flipped bits of the page that says what the file is are mended.
+  ///
   /// @returns What is wrong if it cannot be opened, is something else, or is in use. A file that is
   ///          something else is left as it is.
   desk::Problem open(const std::string& path);
+  /// @returns True if `open()` has mended that page: the disk may have damaged records, too.
+  bool had_damaged_title() const noexcept { return had_damaged_title_; }
 
   bool read(std::size_t offset, Span<std::uint8_t> bytes) noexcept override;
   bool write(std::size_t offset, Span<const std::uint8_t> bytes) noexcept override;
@@ -69,6 +73,7 @@ class FileBytes final : public StoreBytes {
   desk::Problem take_over(const std::string& path);
 
   int file_ = -1;
+  bool had_damaged_title_ = false;
 };
 
 /// Slots over such bytes. A write is on the disk when it answers kOk; killed on its way, the

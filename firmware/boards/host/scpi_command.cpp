@@ -93,6 +93,10 @@ class ScpiJob final {
       if (desk::Problem problem = file_bytes_.open(options.store_path)) {
         return problem;
       }
+      if (file_bytes_.had_damaged_title()) {
+        std::fputs("emax: --store: the first page of the file was damaged, and is mended\n",
+                   stderr);
+      }
     }
     static app::InPlace<app::Instrument> memory;
     const app::Ports ports = {bench_, port_, clock_, nullptr, &store_};

@@ -839,6 +839,18 @@ TEST(Instrument, KeepsSettingsInFourSlots) {
   EXPECT_EQ(error_of(i, "*RCL"), "-109,\"Missing parameter;*RCL\"");
 }
 
+// The settings of before are better than none, but must not pass for those of the last *SAV.
+TEST(Instrument, SaysThatTheNewestSettingsAreDamaged) {
+  InstrumentBench i;
+  ASSERT_EQ(i.ask("CALC:ENER:TIME 3ms;*SAV 1;:CALC:ENER:TIME 4ms;*SAV 1"), "");
+  i.store.at(3, 30) ^= 1U;
+  EXPECT_EQ(error_of(i, "*RCL 1"),
+            "-314,\"Save/recall memory lost;a copy is damaged: this one may be older\"");
+  EXPECT_EQ(i.ask("CALC:ENER:TIME?"), "3.0E-3");
+  ASSERT_EQ(i.ask("*SAV 1;*RST;*RCL 1;:CALC:ENER:TIME?"), "3.0E-3");
+  EXPECT_EQ(i.ask("SYST:ERR:COUN?"), "0") << "a new *SAV ends it";
+}
+
 TEST(Instrument, AnswersTheInBandErrorAndTheUncertaintyOfTheEnergy) {
   InstrumentBench i;
   ASSERT_EQ(i.ask("CALC:MOD 1.037,4073,0.3182,0.003,6,0.0004;:CALC:MCAR:TRI 1000"), "");
@@ -877,6 +889,28 @@ TEST(Instrument, KnowsTheLastIdentificationAfterPowerOff) {
   EXPECT_EQ(error_of(i, "CALC:MCAR:DIST BOX;BIRG 1;:INIT:REP"), needs_fit);
   EXPECT_EQ(i.ask("CALC:MCAR:BIRG 0;:CALC:MCAR?").substr(0, 5), "1000,");
   ASSERT_EQ(i.ask("*RST"), "");
+  EXPECT_EQ(error_of(i, "CALC:IDEN?"),
+            "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"");
+}
+
+TEST(Instrument, SaysThatTheLastIdentificationIsDamaged) {
+  InstrumentBench i;
+  i.send(table1_commands());
+  ASSERT_TRUE(i.settle());
+  const std::string device = i.ask("CALC:IDEN?");
+  const std::string energy = i.ask("CALC:ENER?");
+  ASSERT_EQ(i.ask("*RST"), "");
+  i.send(table1_commands());
+  ASSERT_TRUE(i.settle());
+  ASSERT_EQ(i.ask("CALC:ENER?"), energy);
+  const std::uint32_t first = 2 * app::kIdentificationRecord;
+  i.store.at(first + 1, 30) ^= 1U;
+  i.switch_on();
+  EXPECT_EQ(i.errors(), "-311,\"Memory error;a copy is damaged: the fit may be older\"\n");
+  EXPECT_EQ(i.ask("CALC:IDEN?"), device);
+  i.store.at(first, 30) ^= 1U;
+  i.switch_on();
+  EXPECT_EQ(i.errors(), "-311,\"Memory error;the fit that was kept is damaged: lost\"\n");
   EXPECT_EQ(error_of(i, "CALC:IDEN?"),
             "-230,\"Data corrupt or stale;no points: INIT:SWE or TRAC:FRES:DATA\"");
 }

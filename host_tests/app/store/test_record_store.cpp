@@ -225,6 +225,64 @@ TEST(RecordStore, EveryFlippedBitIsFound) {
   }
 }
 
+bool is_damaged(hal::Store& store) {
+  Bytes bytes(100);
+  return RecordStore(store).read(0, {bytes.data(), bytes.size()}).is_damaged;
+}
+
+// Otherwise the record before would pass for the newest one. One bit may make an older copy of a
+// newer one, so damage of either copy is told.
+TEST(RecordStore, EveryFlippedBitIsTold) {
+  for (const int writes : {1, 2, 3, 4}) {
+    MemoryStore memory(kFormat);
+    for (int i = 0; i < writes; ++i) {
+      EXPECT_FALSE(is_damaged(memory));
+      ASSERT_EQ(write(memory, 0, pattern(30, static_cast<unsigned>(i))), Status::kOk);
+    }
+    EXPECT_FALSE(is_damaged(memory));
+    const auto bits = static_cast<std::uint32_t>(8 * (30 + RecordStore::kFrameBytes));
+    for (std::uint32_t bit = 0; bit < (writes == 1 ? 1U : 2U) * bits; ++bit) {
+      std::uint8_t& byte = memory.at(bit / bits, bit % bits / 8);
+      byte = static_cast<std::uint8_t>(byte ^ (1U << bit % 8));
+      EXPECT_TRUE(is_damaged(memory)) << writes << ' ' << bit;
+      byte = static_cast<std::uint8_t>(byte ^ (1U << bit % 8));
+    }
+  }
+}
+
+TEST(RecordStore, WritesEndTheDamage) {
+  MemoryStore memory(kFormat);
+  ASSERT_EQ(write(memory, 0, pattern(30, 1)), Status::kOk);
+  ASSERT_EQ(write(memory, 0, pattern(30, 2)), Status::kOk);
+  memory.at(1, 20) ^= 1U;
+  ASSERT_TRUE(is_damaged(memory));
+  ASSERT_EQ(write(memory, 0, pattern(30, 3)), Status::kOk);
+  EXPECT_FALSE(is_damaged(memory));
+  EXPECT_EQ(read(memory, 0), pattern(30, 3));
+  // With both copies damaged, one write is enough, too.
+  memory.at(0, 20) ^= 1U;
+  memory.at(1, 20) ^= 1U;
+  EXPECT_EQ(read(memory, 0), nothing());
+  ASSERT_TRUE(is_damaged(memory));
+  ASSERT_EQ(write(memory, 0, pattern(30, 4)), Status::kOk);
+  EXPECT_FALSE(is_damaged(memory));
+  EXPECT_EQ(read(memory, 0), pattern(30, 4));
+}
+
+TEST(RecordStore, NothingWrittenIsNoDamage) {
+  MemoryStore memory(kFormat);
+  EXPECT_FALSE(is_damaged(memory));
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    memory.at(0, i) = 0;
+    memory.at(1, i) = 0;
+  }
+  EXPECT_FALSE(is_damaged(memory)) << "memory that nobody has erased yet";
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    memory.at(0, i) = 0x11;
+  }
+  EXPECT_TRUE(is_damaged(memory));
+}
+
 // The checksum is that of all before it; sizes of one byte only.
 void set_checksum(MemoryStore& memory, std::uint32_t slot) {
   const std::uint32_t size = memory.at(slot, 12);
@@ -324,9 +382,12 @@ TEST(RecordStore, ACopyThatCannotBeReadIsLikeNone) {
   EXPECT_EQ(read(memory, 0), nothing()) << "all bytes zero";
   memory.damage(0);
   EXPECT_EQ(read(memory, 0), nothing());
+  EXPECT_TRUE(is_damaged(memory));
   ASSERT_EQ(write(memory, 0, pattern(8, 1)), Status::kOk);
+  EXPECT_FALSE(is_damaged(memory));
   memory.damage(1);
   EXPECT_EQ(read(memory, 0), pattern(8, 1));
+  EXPECT_TRUE(is_damaged(memory));
   ASSERT_EQ(write(memory, 0, pattern(8, 2)), Status::kOk);
   EXPECT_EQ(read(memory, 0), pattern(8, 2));
   memory.damage(1);

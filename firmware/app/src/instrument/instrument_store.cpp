@@ -6,6 +6,8 @@
 namespace emax::app {
 namespace {
 
+using scpi::ErrorCode;
+
 /// A record on its way to the store or back.
 struct RecordWorkspace {
   std::uint8_t frame[RecordStore::kFrameBytes + kMaxSavedSettingsBytes];
@@ -34,6 +36,10 @@ Status Instrument::recall_settings(std::uint32_t slot) noexcept {
   if (status == Status::kOk) {
     restart_random();
   }
+  if (status == Status::kOk && record.is_damaged) {
+    session_.status().report(ErrorCode::kSaveRecallMemoryLost,
+                             "a copy is damaged: this one may be older");
+  }
   return status;
 }
 
@@ -49,7 +55,7 @@ void Instrument::keep_identification() noexcept {
   RecordStore store(*ports_.store);
   if (store.write(kIdentificationRecord, all.first(size + RecordStore::kFrameBytes)) !=
       Status::kOk) {
-    session_.status().report(scpi::ErrorCode::kMemoryError, "the fit is not kept over power off");
+    session_.status().report(ErrorCode::kMemoryError, "the fit is not kept over power off");
   }
 }
 
@@ -60,6 +66,12 @@ void Instrument::restore_identification() noexcept {
   const RecordStore store(*ports_.store);
   const Span<std::uint8_t> space(sequencer_.borrow<RecordWorkspace>().frame);
   const StoredRecord record = store.read(kIdentificationRecord, space);
+  if (record.is_damaged) {
+    session_.status().report(ErrorCode::kMemoryError,
+                             record.status == Status::kOk
+                                 ? "a copy is damaged: the fit may be older"
+                                 : "the fit that was kept is damaged: lost");
+  }
   Identification identification;
   if (record.status == Status::kOk &&
       decode(Span<const std::uint8_t>(space.first(record.bytes)), identification) == Status::kOk) {

@@ -39,6 +39,13 @@ bool is_newer(std::uint32_t generation, std::uint32_t than) noexcept {
   return generation != than && generation - than < 0x80000000;
 }
 
+// Never written. Memory that nobody has erased yet may hold zeros.
+bool is_blank(const Header& header) noexcept {
+  return (header[0] == hal::kErasedByte || header[0] == 0) &&
+         std::all_of(header.begin(), header.end(),
+                     [&header](std::uint8_t byte) { return byte == header[0]; });
+}
+
 }  // namespace
 
 std::size_t RecordStore::capacity() const noexcept {
@@ -53,6 +60,7 @@ RecordStore::Copy RecordStore::examine(std::uint32_t slot) const noexcept {
     return copy;
   }
   copy.can_be_read = true;
+  copy.is_blank = is_blank(header);
   copy.generation = taken(&header[kGenerationAt]);
   copy.bytes = taken(&header[kSizeAt]);
   if (taken(&header[kMarkAt]) != kMark || taken(&header[kNumberAt]) != slot / 2 ||
@@ -85,6 +93,8 @@ RecordStore::Copies RecordStore::examine_both(std::uint32_t number) const noexce
   Copies copies;
   copies.can_be_read = first.can_be_read || second.can_be_read;
   copies.is_any_whole = first.is_whole || second.is_whole;
+  copies.is_any_damaged =
+      !(first.is_whole || first.is_blank) || !(second.is_whole || second.is_blank);
   const bool is_second =
       second.is_whole && (!first.is_whole || is_newer(second.generation, first.generation));
   copies.newest_slot = 2 * number + (is_second ? 1 : 0);
@@ -94,20 +104,21 @@ RecordStore::Copies RecordStore::examine_both(std::uint32_t number) const noexce
 
 StoredRecord RecordStore::read(std::uint32_t number, Span<std::uint8_t> bytes) const noexcept {
   if (number >= count()) {
-    return {Status::kInvalidArgument, 0};
+    return {Status::kInvalidArgument};
   }
   const Copies copies = examine_both(number);
   if (!copies.is_any_whole) {
-    return {copies.can_be_read ? Status::kNothingStored : Status::kHardwareFault, 0};
+    return {copies.can_be_read ? Status::kNothingStored : Status::kHardwareFault, 0,
+            copies.is_any_damaged};
   }
   const std::size_t size = copies.newest.bytes;
   if (size > bytes.size()) {
-    return {Status::kBufferTooSmall, 0};
+    return {Status::kBufferTooSmall};
   }
   if (store_.read(copies.newest_slot, kHeaderBytes, bytes.first(size)) != Status::kOk) {
-    return {Status::kHardwareFault, 0};
+    return {Status::kHardwareFault};
   }
-  return {Status::kOk, size};
+  return {Status::kOk, size, copies.is_any_damaged};
 }
 
 Status RecordStore::write(std::uint32_t number, Span<std::uint8_t> frame) noexcept {
@@ -126,7 +137,12 @@ Status RecordStore::write(std::uint32_t number, Span<std::uint8_t> frame) noexce
   Crc32 crc;
   crc.add(frame.first(checksum_at));
   put(crc.value(), frame.data() + checksum_at);
-  return store_.write(slot, frame);
+  const Status status = store_.write(slot, frame);
+  if (status == Status::kOk && copies.is_any_damaged && !copies.is_any_whole) {
+    // There is nothing left that it could be older than.
+    (void)store_.write(slot ^ 1U, {});
+  }
+  return status;
 }
 
 }  // namespace emax::app

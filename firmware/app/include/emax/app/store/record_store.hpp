@@ -14,6 +14,9 @@ namespace emax::app {
 struct StoredRecord {
   Status status = Status::kNothingStored;
   std::size_t bytes = 0;  ///< Of the record; 0 unless kOk.
+  /// A copy is not whole, and was written once. With kOk, this may be the record before the newest
+  /// one; with kNothingStored or kHardwareFault, there was a record.
+  bool is_damaged = false;
 };
 
 /// Keeps record n in the slots 2n and 2n + 1 of a store.
@@ -22,7 +25,9 @@ struct StoredRecord {
 /// both, in little endian. A write goes to the copy that is not the newest whole one, so a power
 /// cut at any moment leaves the record of before or the new one, never a mixture, and both copies
 /// wear alike. Read is the newest copy whose checksum holds; a copy that the memory cannot read is
-/// not whole. If damage strikes the newest copy, the one before it is read.
+/// not whole. If damage strikes the newest copy, the one before it is read, and the answer says so:
+/// as one damaged bit may be that of the number which tells older from newer, it says so whichever
+/// copy is damaged, and until the next write.
 ///
 /// Holds nothing but the reference: no state that could disagree with the memory. A read and a
 /// write both go through both copies first, a read then once more through the one that counts.
@@ -74,6 +79,7 @@ class RecordStore {
   struct Copy {
     bool can_be_read = false;
     bool is_whole = false;
+    bool is_blank = false;
     std::uint32_t generation = 0;
     std::size_t bytes = 0;
   };
@@ -81,6 +87,7 @@ class RecordStore {
   struct Copies {
     bool can_be_read = false;
     bool is_any_whole = false;
+    bool is_any_damaged = false;
     std::uint32_t newest_slot = 0;
     Copy newest;
   };
