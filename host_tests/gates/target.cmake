@@ -10,7 +10,9 @@ set(images "")
 set(CMAKE_CXX_STANDARD_LIBRARIES "-lc -lgcc")
 
 # Of a board, but for the fault.
-foreach(image IN ITEMS good_image bad_array bad_depth bad_pointer bad_recursion bad_semihosting)
+foreach(image IN ITEMS 
+    good_image bad_array bad_depth bad_growth bad_member_pointer bad_pointer bad_recursion bad_semihosting
+    bad_virtual_recursion)
   add_executable(${image} ${image}.cpp)
   target_link_libraries(${image} PRIVATE emax_board emax_firmware)
   target_link_options(${image} PRIVATE -nodefaultlibs -T${memory} -T${sections} LINKER:--emit-relocs)
@@ -30,7 +32,8 @@ set(needed_by_bad_libm exp)
 set(needed_by_bad_static __cxa_guard_acquire __cxa_guard_release)
 set(needed_by_bad_stdio printf)
 foreach(image IN ITEMS
-    bad_contraction bad_exception bad_heap bad_initialiser bad_libm bad_static bad_stdio bad_thread_local)
+    bad_contraction bad_exception bad_heap bad_initialiser bad_libm bad_operator_new bad_static bad_stdio
+    bad_thread_local)
   add_executable(${image} ${image}.cpp)
   list(TRANSFORM needed_by_${image} REPLACE "(.+)" "LINKER:--defsym=\\1=0" OUTPUT_VARIABLE needed)
   target_link_options(${image} PRIVATE
@@ -38,6 +41,12 @@ foreach(image IN ITEMS
     LINKER:--entry=0x80000000,--no-gc-sections,--unresolved-symbols=ignore-all,--no-warn-rwx-segments)
   list(APPEND images $<TARGET_FILE:${image}>)
 endforeach()
+# With interrupts of its own, which the board's vectors have no place for.
+add_executable(bad_nesting bad_nesting.cpp)
+target_compile_options(bad_nesting PRIVATE -O2 -ffreestanding -fcallgraph-info=su)
+target_link_options(bad_nesting PRIVATE -nostartfiles -nostdlib -T${CMAKE_CURRENT_SOURCE_DIR}/bad_image.ld
+  LINKER:--entry=main,--no-gc-sections,--emit-relocs,--no-warn-rwx-segments)
+list(APPEND images $<TARGET_FILE:bad_nesting>)
 target_compile_options(bad_contraction PRIVATE -O2 -ffp-contract=fast)
 
 set(folders "")

@@ -6,6 +6,7 @@ The call graphs are those of the libraries; each image's own is beside its objec
 """
 
 import argparse
+import re
 import shutil
 import subprocess
 import sys
@@ -15,15 +16,22 @@ from pathlib import Path
 GOOD = "good_image"
 TIGHT = "tight_image"  # The good one under a name that has hardly any budget.
 
+# On a Cortex-M priorities decide it, and the stacks add up; on RISC-V the handler itself.
+NESTING = r"stack is \d+ bytes over its budget|bad_interrupt\(\) lets interrupts interrupt one another"
+
 # Image, gate and a part of the line that it must be refused with.
 REFUSED = [
     ("bad_array", "stack", "main() has an array on the stack whose size only the running program knows"),
     ("bad_contraction", "contraction", "_Z15bad_contractionfff has "),
     ("bad_depth", "stack", "bytes over its budget"),
     ("bad_exception", "symbols", "has __cxa_throw: exceptions"),
+    ("bad_growth", "stack", "main() moves the stack by an amount that is not known"),
     ("bad_heap", "symbols", "has _Znwj: heap"),
     ("bad_initialiser", "symbols", "has section .init_array, 4 bytes: code that runs before main"),
     ("bad_libm", "symbols", "has exp: libm"),
+    ("bad_member_pointer", "stack", "{anonymous}::Step::again(int) calls something through a pointer in line "),
+    ("bad_nesting", "stack", NESTING),
+    ("bad_operator_new", "symbols", "has _ZN12_GLOBAL__N_114BadOperatorNewnwEj: heap"),
     ("bad_pointer", "stack", "main() calls bad_pointer through a pointer in line 11"),
     ("bad_pointer", "stack", "something points at {anonymous}::bad_target(), which no known call reaches"),
     ("bad_recursion", "stack", "recursion: {anonymous}::bad_recursion(int) -> {anonymous}::bad_detour(int)"),
@@ -31,6 +39,7 @@ REFUSED = [
     ("bad_static", "symbols", "has _ZGVZ10bad_staticiE5first: guard of a function-local static"),
     ("bad_stdio", "symbols", "has printf: stdio"),
     ("bad_thread_local", "symbols", ": thread-local storage"),
+    ("bad_virtual_recursion", "stack", "recursion: {anonymous}::BadStep::take(int) -> {anonymous}::BadStep::take(int)"),
     (TIGHT, "footprint", "flash is "),
     (TIGHT, "footprint", "ram is "),
     (TIGHT, "stack", "stack is "),
@@ -87,6 +96,10 @@ def main() -> int:
     return 1 if failures else 0
 
 
+def is_it(complaint: str, line: str) -> bool:
+    return re.search(NESTING, line) is not None if complaint == NESTING else complaint in line
+
+
 def check(gates: Gates, images: dict[str, Path]) -> int:
     failures = 0
     for gate in ("symbols", "contraction", "footprint", "stack"):
@@ -97,7 +110,8 @@ def check(gates: Gates, images: dict[str, Path]) -> int:
             print(result.stdout + result.stderr)
     for name, gate, complaint in REFUSED:
         result = gates.run(gate, images[name])
-        if result.returncode == 1 and any(complaint in line for line in result.stdout.splitlines()):
+        lines = result.stdout.splitlines()
+        if result.returncode == 1 and any(is_it(complaint, line) for line in lines):
             print(f"{name} is refused by {gate}: {complaint}")
             continue
         failures += 1

@@ -12,6 +12,7 @@ COMPLAINTS = {
     "bad_heap": "needs _Znwm: heap",
     "bad_initialiser": "has section .init_array: code that runs before main",
     "bad_libm": "needs exp: libm",
+    "bad_operator_new": "has _ZN12_GLOBAL__N_114BadOperatorNewnwEm: heap",
     "bad_static": "has _ZGVZ10bad_staticiE5first: guard of a function-local static",
     "bad_stdio": "needs printf: stdio",
     "bad_thread_local": "has section .tdata: thread-local storage",

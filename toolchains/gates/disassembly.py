@@ -16,6 +16,9 @@ DATA = re.compile(r"\s*[0-9a-f]+:\t\.(word|short|byte|2byte|4byte)\s")
 TARGET = re.compile(r"([0-9a-f]+) <")
 
 CONDITION = r"(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)"
+# They have the stack pointer as first operand, and leave it as it is.
+ARM_READS = ("cmp", "cmn", "tst", "teq", "str", "stm", "msr")
+RISCV_READS = ("sb", "sh", "sw")
 ARM_REGISTER = re.compile(r"(?:r\d+|s[bl]|fp|ip|lr|sp|pc)")
 
 
@@ -29,7 +32,9 @@ class Instruction(NamedTuple):
 class Effect(NamedTuple):
     """What an instruction does. Targets are addresses; a call or jump through a register has none."""
 
-    grows: "int | None" = 0  # Bytes that the stack grows by; None if only the running program knows.
+    grows: "int | None" = 0  # Bytes that the stack grows by; None if the instruction does not say it.
+    by: str = ""  # With None: the register that says it, if one does.
+    is_shrinking: bool = False  # With `by`: the register is added.
     falls_through: bool = True
     jump: "int | None" = None
     call: "int | None" = None
@@ -98,9 +103,11 @@ def arm_effect(instruction: Instruction) -> Effect:
     if match := re.fullmatch(rf"(str|ldr)(d|b|h)?({CONDITION})?", mnemonic):
         return arm_single(match[1], bool(match[3]), operands)
     if match := re.fullmatch(rf"(add|sub)(s|w)?({CONDITION})?", mnemonic):
-        return arm_arithmetic(match[1], operands)
+        return arm_arithmetic(match[1], bool(match[3]), operands)
     if re.fullmatch(rf"mov(s)?({CONDITION})?", mnemonic):
         return arm_move(operands)
+    if "sp!" in operands or (operands.startswith("sp,") and not mnemonic.startswith(ARM_READS)):
+        return Effect(grows=None)
     return Effect(switches_stack=mnemonic == "msr" and operands.lower().startswith(("msp", "psp")))
 
 
@@ -133,7 +140,9 @@ def arm_multiple(mnemonic: str, conditional: bool, operands: str) -> Effect:
     size = (8 if registers[0].startswith("d") else 4) * count
     grows = size if mnemonic.endswith("push") or mnemonic.endswith("db") else -size
     returns = grows < 0 and "pc" in registers
-    return Effect(grows=0 if conditional else grows, falls_through=not returns or conditional, returns=returns)
+    if conditional and grows < 0:
+        grows = 0  # As deep as any way there makes it.
+    return Effect(grows=grows, falls_through=not returns or conditional, returns=returns)
 
 
 def arm_single(mnemonic: str, conditional: bool, operands: str) -> Effect:
@@ -141,22 +150,27 @@ def arm_single(mnemonic: str, conditional: bool, operands: str) -> Effect:
     to_pc = mnemonic == "ldr" and "pc" in registers
     if match := re.fullmatch(r"sp, #-(\d+)\]!", place):
         return Effect(grows=int(match[1]))
+    if match := re.fullmatch(r"sp\], #-(\d+)", place):
+        return Effect(grows=int(match[1]))
     if match := re.fullmatch(r"sp\], #(\d+)", place):
         return Effect(grows=0 if conditional else -int(match[1]), falls_through=not to_pc or conditional, returns=to_pc)
-    if registers.startswith("sp"):
+    if mnemonic == "ldr" and registers.startswith("sp"):
         return Effect(switches_stack=True)
     return Effect(falls_through=not to_pc or conditional, register_jump=to_pc)
 
 
-def arm_arithmetic(mnemonic: str, operands: str) -> Effect:
+def arm_arithmetic(mnemonic: str, conditional: bool, operands: str) -> Effect:
     parts = operands.split(", ")
     if parts[0] != "sp":
         return Effect()
     if match := re.fullmatch(r"#(\d+)", parts[-1]):
         if len(parts) == 3 and parts[1] != "sp":
             return Effect(grows=0)  # Back from a frame pointer: the stack shrinks.
-        return Effect(grows=int(match[1]) if mnemonic == "sub" else -int(match[1]))
-    return Effect(grows=None)
+        if mnemonic == "add":
+            return Effect(grows=0 if conditional else -int(match[1]))
+        return Effect(grows=int(match[1]))
+    is_plain = parts[:-1] in (["sp"], ["sp", "sp"]) and ARM_REGISTER.fullmatch(parts[-1]) is not None
+    return Effect(grows=None, by=parts[-1] if is_plain else "", is_shrinking=mnemonic == "add")
 
 
 def riscv_effect(instruction: Instruction) -> Effect:
@@ -183,6 +197,44 @@ def riscv_effect(instruction: Instruction) -> Effect:
             return Effect()  # The lower half of an address.
         amount = operands.removeprefix("sp,sp,")
         if not re.fullmatch(r"-?\d+", amount):
-            return Effect(grows=None)
+            return Effect(grows=None, by=amount, is_shrinking=mnemonic == "add")
         return Effect(grows=-int(amount) if mnemonic != "sub" else int(amount))
+    if operands.startswith("sp,") and mnemonic not in RISCV_READS:
+        if re.fullmatch(r"sp,s0,-\d+", operands) and mnemonic == "addi":
+            return Effect()  # Back from a frame pointer: the stack shrinks.
+        return Effect(grows=None)
     return Effect()
+
+
+def constant_in(register: str, before: "list[Instruction]", image: Image) -> "int | None":
+    """What instructions put into a register right before it is used, if that is a constant."""
+    for at in range(len(before) - 1, max(len(before) - 4, -1), -1):
+        instruction = before[at]
+        if effect_of(instruction, image.is_arm) != Effect():
+            return None
+        if not re.match(rf"{register}\b", instruction.operands):
+            continue
+        value = instruction.operands.partition(",")[2].strip()
+        mnemonic = re.sub(r"\.[nw]$", "", instruction.mnemonic)
+        if mnemonic in ("mov", "movs", "movw", "li", "c.li") and re.fullmatch(r"#?-?\d+", value):
+            return int(value.removeprefix("#"))
+        if mnemonic in ("lui", "c.lui") and re.fullmatch(r"0x[0-9a-f]+", value):
+            return signed(int(value, 16) << 12)
+        if mnemonic == "addi" and (match := re.fullmatch(rf"{register},(-?\d+)", value)):
+            upper = constant_in(register, before[:at], image)
+            return None if upper is None else signed(upper + int(match[1]))
+        if mnemonic == "ldr" and value.startswith("[pc"):
+            return word_at(target_of(instruction), image)
+        return None
+    return None
+
+
+def signed(value: int) -> int:
+    return (value + 0x80000000) % 0x100000000 - 0x80000000
+
+
+def word_at(address: "int | None", image: Image) -> "int | None":
+    for section in image.sections:
+        if address is not None and section.is_allocated and section.address <= address < section.address + section.size:
+            return next((signed(word) for at, word in image.words(section) if at == address), None)
+    return None

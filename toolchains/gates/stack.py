@@ -8,8 +8,9 @@ the depth at each of its calls, for those of the libraries too. gcc's call graph
 a pointer stands in the source. The name called there decides which functions it may reach: all in the image's vtables
 that have this name, or those that INDIRECT_CALLS.TXT lists.
 
-Proven is the deepest chain from the reset on, plus the worst interrupt on top of it, plus the worst fault on top of
-that. Code that changes to another stack must fit between fault_stack_limit and fault_stack_top. Prints these chains
+Proven is the deepest chain from the reset on, plus the worst interrupt of each level of priority on top of it, plus the
+worst fault on top of that. Which handlers share a level, interrupt_levels.txt says; all others have one of their own.
+A trap handler of RISC-V must not let other interrupts through. Code that changes to another stack must fit between fault_stack_limit and fault_stack_top. Prints these chains
 and exits with 1 if the image is over its budget, has recursion, an array on the stack whose size only the running
 program knows, or a call whose targets are not known.
 """
@@ -22,7 +23,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import budgets
-from disassembly import disassemble, effect_of, target_of
+from disassembly import Instruction, constant_in, disassemble, effect_of, target_of
 from image import STT_FUNC, Image
 
 NODE = re.compile(r'node: \{ title: "([^"]*)" label: "(.*?)"')
@@ -37,6 +38,7 @@ EXCEPTION_FRAME, EXCEPTION_FRAME_WITH_FPU = 32 + 4, 104 + 4
 # The places of the vector table: exceptions that preempt interrupts, then interrupts.
 VECTORS = "vectors"
 FIRST_FAULT, LAST_FAULT = 2, 6
+INTERRUPT_LEVELS = Path(__file__).with_name("interrupt_levels.txt")
 FAULT_STACK = ("fault_stack_limit", "fault_stack_top")
 STACK_THAT_GROWS = 1 << 20
 MOST_OF_A_KIND = 5  # Problems that have one cause.
@@ -136,8 +138,11 @@ class Graph:
         name = ""
         if line and int(line) <= len(lines):
             before, after = lines[int(line) - 1][: int(column) - 1], lines[int(line) - 1][int(column) - 1 :]
-            if match := re.match(r"(\w+)", after) or re.search(r"(\w+)\s*\)*\s*$", before):
-                name = match[1]
+            # A pointer to a member may be any virtual function, whatever its own name is.
+            if match := re.match(r"\w+", after):
+                before += match[0]
+            if match := re.search(r"((?:->|\.)\*\s*)?\b(\w+)[\s)]*$", before):
+                name = "" if match[1] else match[2]
         return Place(file, line, name)
 
     def find(self, file: str, symbol: str) -> "Node | None":
@@ -176,6 +181,12 @@ def read_rules(path: str) -> list[Rule]:
             sys.exit(f"{path}:{number}: expected '<file> <name> -> <function>...' or '<function> -> itself'")
         rules.append(Rule(file, name.strip(), callees.split()))
     return rules
+
+
+def read_levels(path: Path, image: str) -> list[list[str]]:
+    """Of this image, the handlers of each level of priority."""
+    lines = [line.partition("#")[0].split() for line in path.read_text().splitlines()]
+    return [fields[1:] for fields in lines if fields and fnmatch.fnmatchcase(image, fields[0])]
 
 
 class Program:
@@ -247,7 +258,11 @@ class Program:
         if effect.switches_stack:
             function.on_other_stack.add(self.after[address])
             return []
-        function.grows_unknown |= effect.grows is None
+        grows = effect.grows
+        if grows is None and effect.by:
+            amount = constant_in(effect.by, self._before(address), self.image)
+            grows = None if amount is None else -amount if effect.is_shrinking else amount
+        function.grows_unknown |= grows is None
         if effect.call is not None:
             function.calls.add(Call(depth, effect.call))
         if effect.register_call:
@@ -257,7 +272,7 @@ class Program:
         if effect.table_jump or effect.register_jump:
             function.has_table = True
             function.table_depth = max(function.table_depth, depth)
-        depth = max(depth + (effect.grows or 0), 0)
+        depth = max(depth + (grows or 0), 0)
         function.frame = max(function.frame, depth)
         following = []
         targets = [effect.jump] if effect.jump is not None else []
@@ -270,21 +285,19 @@ class Program:
                 function.calls.add(Call(depth, target))
         return [(t, depth) for t in targets + following if self._is_inside(function, t)]
 
+    def _before(self, address: int) -> list[Instruction]:
+        """The instructions of the same code up to there."""
+        return [i for i in self.codes[self.owners[address]].instructions if i.address < address]
+
     def _compare(self, function: Function) -> None:
         node = function.node
+        if function.grows_unknown:
+            self.problems.append(f"{function.name} moves the stack by an amount that is not known")
         if node is None:
-            if function.grows_unknown:
-                self.problems.append(f"{function.name} moves the stack by an amount that is not known")
             return
         if node.is_dynamic:
             self.problems.append(f"{function.name} has an array on the stack whose size only the running program knows")
-        if function.grows_unknown:
-            # Only gcc knows; then every call is as deep as the frame.
-            function.frame = max(function.frame, node.frame or 0)
-            function.calls = {Call(function.frame, call.target) for call in function.calls}
-            function.register_calls = {function.frame for _ in function.register_calls}
-            function.register_jumps = {function.frame for _ in function.register_jumps}
-        elif function.frame != node.frame:
+        if function.frame != node.frame:
             self.notes.append(f"{function.frame} bytes, not {node.frame}: {function.name}")
 
     def _virtual_functions(self) -> set[int]:
@@ -403,6 +416,36 @@ class Program:
                 (faults if number <= LAST_FAULT else interrupts).add(target)
         return interrupts, faults
 
+    def interrupt_levels(self) -> list[set[int]]:
+        """The handlers of each level of priority."""
+        left = set(self.handlers()[0])
+        found = []
+        for patterns in read_levels(INTERRUPT_LEVELS, self.image.name):
+            shared = {a for a in left if any(self._is_called(a, pattern) for pattern in patterns)}
+            found.append(shared)
+            left -= shared
+        return [level for level in found if level] + [{address} for address in sorted(left)]
+
+    def check_nesting(self) -> None:
+        """A trap handler of RISC-V runs to its end before the next one, unless it writes to mstatus."""
+        for handler in [] if self.image.is_arm else self.handlers()[0]:
+            for function in self.reached(handler):
+                code = self.codes[self.owners[function.address]]
+                if any(i.mnemonic.startswith("csr") and re.search(r"\bmstatus,", i.operands + ",") and "csrr" != i.mnemonic
+                       for i in code.instructions):
+                    self.problems.append(f"{function.name} lets interrupts interrupt one another")
+
+    def reached(self, start: int) -> list[Function]:
+        """All that a call of this function may run, on whatever stack."""
+        found: dict[int, Function] = {}
+        work = [start]
+        while work:
+            address = work.pop()
+            if address not in found and address in self.instructions:
+                found[address] = self.function(address)
+                work += [call.target for call in found[address].calls] + sorted(found[address].on_other_stack)
+        return list(found.values())
+
     # The address that goes to mtvec is made in the instructions before.
     def _trap_handlers(self) -> set[int]:
         found = set()
@@ -431,9 +474,10 @@ def levels(program: Program) -> list[Level]:
     entry = program.image.entry
     roots = {entry, *program.switched(entry)}
     found = [Level("main", 0, *worst(program, roots))]
-    for title, handlers in zip(("interrupt", "fault"), program.handlers()):
-        if handlers:
-            found.append(Level(title, pushed_by(program), *worst(program, handlers)))
+    for handlers in program.interrupt_levels():
+        found.append(Level("interrupt", pushed_by(program), *worst(program, handlers)))
+    if faults := program.handlers()[1]:
+        found.append(Level("fault", pushed_by(program), *worst(program, faults)))
     return found
 
 
@@ -487,6 +531,7 @@ def prove(image: Image, objdump: str, folders: list[str], calls: str) -> Proof:
             needed = level.bytes + level.pushed
             program.problems.append(f"the stack of the faults has {size} bytes, and {needed} are needed")
     program.check_pointers()
+    program.check_nesting()
     functions = program.functions.values()
     of_gcc = sum(1 for function in functions if function.node)
     return Proof(proven, found, len(functions), of_gcc, program.notes, sorted(set(program.problems)))

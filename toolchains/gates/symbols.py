@@ -15,8 +15,11 @@ import sys
 # Compilers call these for copies of structs and arrays, and every freestanding environment has them.
 ALLOWED = {"memcpy", "memmove", "memset", "memcmp", "_GLOBAL_OFFSET_TABLE_"}
 
+# Stands for what `meaning()` finds by reading the name: an operator new or delete that a class has of its own.
+CLASS_HEAP = "operator new or delete of a class"
 # What an undefined symbol means, first match first.
 FAMILIES = [
+    (CLASS_HEAP, "heap"),
     (r"malloc|calloc|realloc|free|aligned_alloc|posix_memalign|_?sbrk|_Zn[wa].*|_Zd[la].*", "heap"),
     (r"__cxa_guard_.*", "guard of a function-local static"),
     (r"__cxa_atexit|atexit|__dso_handle", "destructor of a static object"),
@@ -36,6 +39,7 @@ SECTIONS = [
     (r"\.gcc_except_table(\..*)?", "exception tables"),
 ]
 DEFINED = [
+    (CLASS_HEAP, "heap"),
     (r"_GLOBAL__(sub_)?[ID]_.*", "code that runs before main"),
     (r"_ZGV.*", "guard of a function-local static"),
     (r"__emutls_.*", "thread-local storage"),
@@ -106,7 +110,30 @@ def breaches(objects: list[Object]) -> list[str]:
 
 
 def meaning(table: list[tuple[str, str]], name: str) -> "str | None":
+    if is_class_heap(name):
+        name = CLASS_HEAP
     return next((reason for pattern, reason in table if re.fullmatch(pattern, name)), None)
+
+
+def is_class_heap(name: str) -> bool:
+    """Whether a mangled name is that of an operator new or delete within a class."""
+    return name.startswith("_ZN") and re.search(r"(n[wa]|d[la])E", without_identifiers(name)) is not None
+
+
+def without_identifiers(name: str) -> str:
+    """A mangled name without the names in it, each of which stands behind its length, and without numbers."""
+    kept = ""
+    at = 0
+    while at < len(name):
+        if number := re.compile(r"L[a-z]n?\d+E").match(name, at):
+            at = number.end()
+        elif length := re.compile(r"[1-9]\d*").match(name, at):
+            at = length.end() + int(length[0])
+            kept += "."
+        else:
+            kept += name[at]
+            at += 1
+    return kept
 
 
 if __name__ == "__main__":
