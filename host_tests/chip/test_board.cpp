@@ -42,6 +42,24 @@ TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
   EXPECT_EQ(board->chip.findings.text(), "");
 }
 
+// The proof of the stack relies on it (toolchains/gates/interrupt_levels.txt): console, output and
+// clock never interrupt one another, and the watchdog's timer interrupts all three.
+TEST_F(RealImage, HasTwoLevelsOfInterrupts) {
+  boot();
+  std::vector<unsigned> ordinary;
+  std::vector<unsigned> first;
+  Nvic& nvic = board->chip.processor().nvic();
+  for (unsigned line = 0; line < kInterruptLines; ++line) {
+    if (nvic.enabled(interrupt(line))) {
+      (nvic.priority(interrupt(line)) == 0 ? first : ordinary).push_back(line);
+      EXPECT_EQ(nvic.priority(interrupt(line)) & ~0x80U, 0U) << line;
+    }
+  }
+  constexpr unsigned kTim7 = 55;  // RM0440 table 97 and RM0433 table 150.
+  EXPECT_EQ(first, std::vector<unsigned>{kTim7});
+  EXPECT_EQ(ordinary.size(), 3U);
+}
+
 TEST_F(RealImage, TheDrivePinRestsUntilASweepBegins) {
   boot();
   EXPECT_EQ(ask("*TST?"), "0");

@@ -1,4 +1,5 @@
-// Interrupts that interrupt one another, each of which alone would fit: the stack gate must refuse it.
+// Interrupts that interrupt one another, each of which alone would fit: the stack gate must refuse
+// it.
 extern "C" {
 int main();
 void bad_interrupt();

@@ -220,7 +220,7 @@ def constant_in(register: str, before: "list[Instruction]", image: Image) -> "in
             return int(value.removeprefix("#"))
         if mnemonic in ("lui", "c.lui") and re.fullmatch(r"0x[0-9a-f]+", value):
             return signed(int(value, 16) << 12)
-        if mnemonic == "addi" and (match := re.fullmatch(rf"{register},(-?\d+)", value)):
+        if mnemonic in ("add", "addi") and (match := re.fullmatch(rf"{register},(-?\d+)", value)):
             upper = constant_in(register, before[:at], image)
             return None if upper is None else signed(upper + int(match[1]))
         if mnemonic == "ldr" and value.startswith("[pc"):
