@@ -372,9 +372,81 @@ TEST(Store, WriteReadsBack) {
   EXPECT_EQ(store.write(0, {bytes.data(), 64}), Status::kHardwareFault);
 }
 
+/// A memory that answers as it is told, and one byte of which cannot be programmed.
+class ToldStore final : public hal::Store {
+ public:
+  explicit ToldStore(const StoreFormat& format) : Store(format), bytes_(format.slot_bytes, 0xFF) {}
+
+  Status read_answer = Status::kOk;
+  Status erase_answer = Status::kOk;
+  Status program_answer = Status::kOk;
+  std::size_t stuck = SIZE_MAX;
+
+ private:
+  Status do_read(std::uint32_t, std::uint32_t offset, Span<std::uint8_t> bytes) noexcept override {
+    std::copy_n(bytes_.data() + offset, bytes.size(), bytes.data());
+    return read_answer;
+  }
+  Status do_erase(std::uint32_t) noexcept override {
+    std::fill(bytes_.begin(), bytes_.end(), hal::kErasedByte);
+    return erase_answer;
+  }
+  Status do_program(std::uint32_t, std::uint32_t offset,
+                    Span<const std::uint8_t> unit) noexcept override {
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+      bytes_[offset + i] = offset + i == stuck ? hal::kErasedByte : unit[i];
+    }
+    return program_answer;
+  }
+
+  std::vector<std::uint8_t> bytes_;
+};
+
+TEST(Store, EveryByteIsReadBack) {
+  const std::vector<std::uint8_t> bytes(64, 0x5A);
+  for (std::size_t stuck = 0; stuck < 64; ++stuck) {
+    ToldStore store(kStoreFormat);
+    EXPECT_EQ(store.write(0, {bytes.data(), 64}), Status::kOk);
+    store.stuck = stuck;
+    EXPECT_EQ(store.write(0, {bytes.data(), 64}), Status::kHardwareFault) << stuck;
+  }
+}
+
+// Whatever a board answers that is not kOk: the contract knows one fault only.
+TEST(Store, AnyFaultOfTheMemoryIsAHardwareFault) {
+  const std::uint8_t bytes[] = {1, 2};
+  std::uint8_t found[2] = {};
+  for (const Status answer :
+       {Status::kHardwareFault, Status::kLateBlock, Status::kInvalidArgument}) {
+    ToldStore store({1, 64, 8});
+    EXPECT_EQ(store.write(0, bytes), Status::kOk);
+    EXPECT_EQ(store.read(0, found), Status::kOk);
+    store.read_answer = answer;
+    EXPECT_EQ(store.read(0, found), Status::kHardwareFault);
+    EXPECT_EQ(store.write(0, bytes), Status::kHardwareFault) << "it cannot be read back";
+    store.read_answer = Status::kOk;
+    store.erase_answer = answer;
+    EXPECT_EQ(store.write(0, bytes), Status::kHardwareFault);
+    store.erase_answer = Status::kOk;
+    store.program_answer = answer;
+    EXPECT_EQ(store.write(0, bytes), Status::kHardwareFault);
+  }
+}
+
+TEST(Store, FormatsAtTheEndsOfTheirRangesAreWritten) {
+  const std::uint8_t byte[] = {7};
+  for (const StoreFormat& format :
+       {StoreFormat{1, 1, 1}, StoreFormat{1, 256, 256}, StoreFormat{1, 512, 256}}) {
+    ToldStore store(format);
+    EXPECT_EQ(store.write(0, byte), Status::kOk) << format.slot_bytes;
+    EXPECT_EQ(store.write(1, byte), Status::kInvalidArgument);
+  }
+}
+
 TEST(Store, FormatsOutsideTheirRangesAreNotWritten) {
   for (const StoreFormat& format :
-       {StoreFormat{2, 64, 0}, StoreFormat{2, 65, 8}, StoreFormat{2, 1024, 512}}) {
+       {StoreFormat{2, 64, 0}, StoreFormat{2, 65, 8}, StoreFormat{2, 1024, 512},
+        StoreFormat{2, 0, 8}, StoreFormat{2, 514, 257}}) {
     StuckStore store(format);
     EXPECT_EQ(store.write(0, Span<const std::uint8_t>()), Status::kHardwareFault)
         << format.unit_bytes;

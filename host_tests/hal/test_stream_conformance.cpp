@@ -664,5 +664,98 @@ TEST(StreamConformance, EveryClauseHasABrokenStream) {
   EXPECT_EQ(names_of(~proven), "none");
 }
 
+/// A board that answers as it is told.
+class ToldStream final : public AnalogStream {
+ public:
+  explicit ToldStream(const StreamFormat& format) : AnalogStream(format) {}
+
+  Status start_answer = Status::kOk;
+  Status exchange_answer = Status::kOk;
+  int starts = 0;
+  int ramps = 0;
+  int stops = 0;
+
+ private:
+  Status do_start() noexcept override {
+    ++starts;
+    return start_answer;
+  }
+  Exchange do_exchange(Span<const Word>, Span<Frame>) noexcept override {
+    return {exchange_answer, 0};
+  }
+  std::uint32_t do_ramp_to_zero(Word) noexcept override {
+    ++ramps;
+    return 0;
+  }
+  void do_stop() noexcept override { ++stops; }
+  bool do_drive_is_at_zero() const noexcept override { return true; }
+};
+
+constexpr DriveLimits kSomeLimits = {1 << 20, 1 << 20};
+
+TEST(AnalogStream, StartsWithAnyFormatWithinItsRanges) {
+  constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+  constexpr double kHuge = std::numeric_limits<double>::max();
+  for (const StreamFormat& format :
+       {StreamFormat{kTiny, kTiny, kTiny, 1, 0}, StreamFormat{kHuge, kHuge, kHuge, 64, 0}}) {
+    ToldStream stream(format);
+    EXPECT_EQ(stream.start(kSomeLimits), Status::kOk);
+    EXPECT_TRUE(stream.running());
+  }
+}
+
+TEST(AnalogStream, DoesNotStartWithAFormatOutsideItsRanges) {
+  const StreamFormat good = {1.0, 1.0, 1.0, 1, 0};
+  std::vector<StreamFormat> bad = {{1.0, 1.0, 1.0, 0, 0}, {1.0, 1.0, 1.0, 65, 0}};
+  for (const double value : {0.0, -1.0, std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    for (double StreamFormat::*const member :
+         {&StreamFormat::sample_rate_hz, &StreamFormat::drive_full_scale_v,
+          &StreamFormat::input_full_scale_v}) {
+      bad.push_back(good);
+      bad.back().*member = value;
+    }
+  }
+  for (const StreamFormat& format : bad) {
+    ToldStream stream(format);
+    EXPECT_EQ(stream.start(kSomeLimits), Status::kHardwareFault);
+    EXPECT_FALSE(stream.running());
+    EXPECT_EQ(stream.starts, 0) << "the board is not asked";
+  }
+}
+
+TEST(AnalogStream, AnyRefusalOfTheBoardIsAHardwareFault) {
+  for (const Status answer : {Status::kHardwareFault, Status::kLateBlock, Status::kNotRunning}) {
+    ToldStream stream({1.0, 1.0, 1.0, 1, 0});
+    stream.start_answer = answer;
+    EXPECT_EQ(stream.start(kSomeLimits), Status::kHardwareFault);
+    EXPECT_FALSE(stream.running());
+    EXPECT_EQ(stream.stops, 1);
+  }
+}
+
+// Late and lost blocks are told apart; any other answer counts as a fault of the hardware.
+TEST(AnalogStream, FaultsOfAnExchangeKeepTheirNames) {
+  const struct {
+    Status answer;
+    Status expected;
+  } cases[] = {{Status::kLateBlock, Status::kLateBlock},
+               {Status::kLostBlock, Status::kLostBlock},
+               {Status::kHardwareFault, Status::kHardwareFault},
+               {Status::kInvalidArgument, Status::kHardwareFault},
+               {Status::kDriveLimit, Status::kHardwareFault}};
+  for (const auto& one : cases) {
+    ToldStream stream({1.0, 1.0, 1.0, 1, 0});
+    ASSERT_EQ(stream.start(kSomeLimits), Status::kOk);
+    const Word drive[] = {0};
+    Frame response[1];
+    stream.exchange_answer = one.answer;
+    EXPECT_EQ(stream.exchange(drive, response).status, one.expected);
+    EXPECT_FALSE(stream.running());
+    EXPECT_EQ(stream.ramps, 1);
+    EXPECT_EQ(stream.stops, 1);
+  }
+}
+
 }  // namespace
 }  // namespace emax::test
