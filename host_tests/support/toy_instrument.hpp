@@ -115,6 +115,7 @@ inline void gain(Toy& toy, Call& call) noexcept {
   if (call.number_or_word_setting({0.0, 100.0, __builtin_nan(""), nullptr}, kWords, value, value)) {
     toy.gain = value.number;
     toy.gain_word = value.word;
+    ++toy.stored;
   }
 }
 

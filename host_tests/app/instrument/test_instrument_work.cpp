@@ -579,6 +579,12 @@ TEST(InstrumentSweep, RefusesWhatTheBenchCannotDo) {
             "2.5\"\n");
   EXPECT_EQ(i.ask("SOUR:LEV 21"), "");
   EXPECT_EQ(i.errors().substr(0, 4), "-221");
+  // A period of 10 s is the longest that is recorded.
+  EXPECT_EQ(i.ask("SWE:CHEC 0.1"), "");
+  EXPECT_EQ(i.errors(), "");
+  EXPECT_EQ(i.ask("SWE:CHEC 0.0999"), "");
+  EXPECT_EQ(i.errors().substr(0, 4), "-222");
+  EXPECT_EQ(i.ask("SWE:CHEC?"), "1.0E-1");
 }
 
 TEST(InstrumentWatchdog, IsKickedByEveryPoll) {

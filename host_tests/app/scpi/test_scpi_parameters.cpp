@@ -271,14 +271,15 @@ TEST(ScpiParameters, Choices) {
 // What the caller does with a new value must happen for a new value only.
 TEST(ScpiParameters, SettingsTellWhetherThereIsANewValue) {
   for (const char* good : {"SOUR:LEV 3", "CALC:FILT:ORD 3", "CALC:ENER:CRIT DIFF", "OUTP ON",
-                           "OUTP 1", "SOUR:LEV MIN"}) {
+                           "OUTP 1", "SOUR:LEV MIN", "CALC:FILT:GAIN 3", "CALC:FILT:GAIN AUTO"}) {
     ToyConsole console;
     EXPECT_EQ(error_of(console, good), 0) << good;
     EXPECT_EQ(console.toy.stored, 1) << good;
   }
-  for (const char* other : {"SOUR:LEV 30", "SOUR:LEV X", "CALC:FILT:ORD 30", "CALC:FILT:ORD X",
-                            "CALC:ENER:CRIT X", "OUTP X", "OUTP 1 S", "SOUR:LEV?", "SOUR:LEV? MIN",
-                            "CALC:FILT:ORD?", "CALC:FILT:ORD? MIN", "CALC:ENER:CRIT?", "OUTP?"}) {
+  for (const char* other :
+       {"SOUR:LEV 30", "SOUR:LEV X", "CALC:FILT:ORD 30", "CALC:FILT:ORD X", "CALC:ENER:CRIT X",
+        "OUTP X", "OUTP 1 S", "SOUR:LEV?", "SOUR:LEV? MIN", "CALC:FILT:ORD?", "CALC:FILT:ORD? MIN",
+        "CALC:FILT:GAIN?", "CALC:FILT:GAIN? MIN", "CALC:FILT:GAIN X", "CALC:ENER:CRIT?", "OUTP?"}) {
     ToyConsole console;
     (void)console.ask(std::string(other) + "\n");
     EXPECT_EQ(console.toy.stored, 0) << other;
