@@ -228,7 +228,9 @@ TEST_P(PowerCutAt, LeavesTheOldOrTheNewSettings) {
       boot();
       const std::string found = ask("*RCL 1;SENS:SWE:CYCL?");
       ASSERT_TRUE(found == kept || found == wanted) << found << " after a cut at " << operation;
-      ASSERT_EQ(error(), 0) << operation;
+      // A copy that is torn may have been the newer one, and that is told.
+      const int told = error();
+      ASSERT_TRUE(told == 0 || (told == -314 && found == kept)) << told << " at " << operation;
       kept = found;
     }
   }

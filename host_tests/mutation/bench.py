@@ -1,5 +1,6 @@
 """A copy of the tree in which one file at a time is changed, built and tested."""
 
+import json
 import os
 import re
 import shutil
@@ -91,6 +92,7 @@ class Bench:
     def __init__(self, source: Path, work: Path, jobs: int):
         self.tree = work / "tree"
         self.build = work / "build"
+        self.times = work / "times.json"  # Of the tests, as long as the tree is the same.
         self.jobs = jobs
         self.copied = copy_tree(source, self.tree)
         self.tests: dict[str, list[Test]] = {}
@@ -101,6 +103,7 @@ class Bench:
             subprocess.run(["cmake", "-S", str(self.tree), "-B", str(self.build), *OPTIONS],
                            check=True, stdout=subprocess.DEVNULL)
         failing = []
+        known = {} if self.copied or not self.times.is_file() else json.loads(self.times.read_text())
         folders = sorted({folder for area in areas for folder in AREAS[area][1] if folder != "scenario"})
         programs = self._programs(folders)
         if not self._ninja([*programs, *(["emax"] if "desk" in areas else [])], None):
@@ -108,11 +111,12 @@ class Bench:
         for name, folder in programs.items():
             start = time.monotonic()
             command = [str(self.build / name), "--gtest_fail_fast", "--gtest_brief=1"]
-            if run(command, 600.0, self.tree) != 0:
+            if name not in known and run(command, 600.0, self.tree) != 0:
                 failing.append(name)
                 continue
-            test = Test(name, folder, command, time.monotonic() - start)
-            self.tests.setdefault(folder.split("/")[0], []).append(test)
+            known.setdefault(name, time.monotonic() - start)
+            self.tests.setdefault(folder.split("/")[0], []).append(Test(name, folder, command, known[name]))
+        self.times.write_text(json.dumps(known))
         return failing
 
     def _programs(self, folders: list[str]) -> dict[str, str]:
