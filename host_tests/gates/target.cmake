@@ -11,7 +11,7 @@ set(CMAKE_CXX_STANDARD_LIBRARIES "-lc -lgcc")
 
 # Of a board, but for the fault.
 foreach(image IN ITEMS 
-    good_image bad_array bad_depth bad_growth bad_member_pointer bad_pointer bad_recursion bad_semihosting
+    good_image bad_array bad_depth bad_growth bad_hidden_depth bad_member_pointer bad_pointer bad_recursion bad_semihosting
     bad_virtual_recursion)
   add_executable(${image} ${image}.cpp)
   target_link_libraries(${image} PRIVATE emax_board emax_firmware)

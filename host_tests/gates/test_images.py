@@ -27,6 +27,7 @@ REFUSED = [
     ("bad_exception", "symbols", "has __cxa_throw: exceptions"),
     ("bad_growth", "stack", "main() moves the stack by an amount that is not known"),
     ("bad_heap", "symbols", "has _Znwj: heap"),
+    ("bad_hidden_depth", "stack", "bytes over its budget"),
     ("bad_initialiser", "symbols", "has section .init_array, 4 bytes: code that runs before main"),
     ("bad_libm", "symbols", "has exp: libm"),
     ("bad_member_pointer", "stack", "{anonymous}::Step::again(int) calls something through a pointer in line "),
