@@ -19,6 +19,7 @@ CONDITION = r"(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)"
 # They have the stack pointer as first operand, and leave it as it is.
 ARM_READS = ("cmp", "cmn", "tst", "teq", "str", "stm", "msr")
 RISCV_READS = ("sb", "sh", "sw")
+FARTHEST_CONSTANT = 16  # Instructions before its use.
 ARM_REGISTER = re.compile(r"(?:r\d+|s[bl]|fp|ip|lr|sp|pc)")
 
 
@@ -207,8 +208,8 @@ def riscv_effect(instruction: Instruction) -> Effect:
 
 
 def constant_in(register: str, before: "list[Instruction]", image: Image) -> "int | None":
-    """What instructions put into a register right before it is used, if that is a constant."""
-    for at in range(len(before) - 1, max(len(before) - 4, -1), -1):
+    """What instructions put into a register before it is used, if that is a constant, without a branch in between."""
+    for at in range(len(before) - 1, max(len(before) - 1 - FARTHEST_CONSTANT, -1), -1):
         instruction = before[at]
         if effect_of(instruction, image.is_arm) != Effect():
             return None
