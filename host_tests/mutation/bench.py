@@ -89,11 +89,12 @@ class Changed:
 
 
 class Bench:
-    def __init__(self, source: Path, work: Path, jobs: int):
+    def __init__(self, source: Path, work: Path, jobs: int, wanted: str):
         self.tree = work / "tree"
         self.build = work / "build"
         self.times = work / "times.json"  # Of the tests, as long as the tree is the same.
         self.jobs = jobs
+        self.wanted = re.compile(wanted)
         self.copied = copy_tree(source, self.tree)
         self.tests: dict[str, list[Test]] = {}
 
@@ -125,7 +126,7 @@ class Bench:
                                  capture_output=True, text=True, check=True).stdout
         found = {}
         for match in re.finditer(r"^(host_tests/(\w+)/(test_\w+)): CXX_EXECUTABLE_LINKER", listing, re.MULTILINE):
-            if match[2] in folders:
+            if match[2] in folders and self.wanted.search(match[1]):
                 source = next((self.tree / "host_tests" / match[2]).rglob(f"{match[3]}.cpp"), None)
                 if source is not None:
                     found[match[1]] = str(source.parent.relative_to(self.tree / "host_tests"))

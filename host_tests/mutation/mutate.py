@@ -1,6 +1,7 @@
 """Changes one place of the sources at a time, and says which changes no test notices.
 
-usage: mutate.py [--seed N] [--minutes N] [--most N] [--areas AREA...] [--file PATH...] [--list FILE] [--work FOLDER]
+usage: mutate.py [--seed N] [--minutes N] [--most N] [--areas AREA...] [--file PATH...] [--list FILE] [--tests EXPRESSION]
+                 [--work FOLDER] [--jobs N]
 
 Works on a copy of the tree in FOLDER (build/mutation), which it builds there; the tree itself is only read. Takes the
 places in the order that the seed gives, as many as fit into the minutes. --list takes the changes of a report instead,
@@ -103,6 +104,7 @@ def main() -> int:
     parser.add_argument("--areas", nargs="+", choices=list(AREAS), default=list(AREAS))
     parser.add_argument("--file", nargs="+", default=[])
     parser.add_argument("--list", type=Path)
+    parser.add_argument("--tests", default="", help="only programs whose names have this expression in them")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation")
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
@@ -110,7 +112,7 @@ def main() -> int:
     end = time.monotonic() + 60.0 * arguments.minutes
     chosen = listed(arguments.list) if arguments.list else drawn(arguments.areas, arguments.file, arguments.seed)
     todo = [mutant for mutant in chosen if isinstance(mutant, str) or mutant.area in arguments.areas]
-    bench = Bench(ROOT, arguments.work.resolve(), arguments.jobs)
+    bench = Bench(ROOT, arguments.work.resolve(), arguments.jobs, arguments.tests)
     for name in bench.prepare(arguments.areas):
         print(f"{name} fails without any change, and is left out", flush=True)
     counts = go_through(bench, todo[: arguments.most], end)
