@@ -47,7 +47,7 @@ constexpr AdcPairSettings h743_inputs(std::uint32_t clock, std::uint32_t boost,
 }
 
 /// Revision V: a quarter of the bus clock and in step with it (3), 50 MHz, which the chip may halve
-/// again. BOOST 3 is right for both.
+/// again. BOOST 3 is for more than 25 MHz; at 25 MHz it is more than the chip needs.
 inline constexpr AdcPairSettings kH743Inputs = h743_inputs(3U << 16, 3U << 8, 1U << 12);
 
 /// Revision Y and before, whose ADCs take 36 MHz at most, have one bit of BOOST, and do not tell
