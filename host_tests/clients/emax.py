@@ -33,21 +33,32 @@ class EmaxError(RuntimeError):
 
 
 def find_program() -> str:
-    """$EMAX, else `emax` on the PATH, else the one built beside this file."""
-    built = pathlib.Path(__file__).resolve().parents[2] / "build/host/emax"
-    return os.environ.get("EMAX") or shutil.which("emax") or str(built)
+    """$EMAX, else `emax` on the PATH, else the one built in the tree of this file. Raises EmaxError if there is none."""
+    if found := os.environ.get("EMAX") or shutil.which("emax"):
+        return found
+    for folder in pathlib.Path(__file__).resolve().parents:
+        if (built := folder / "build/host/emax").is_file():
+            return str(built)
+    raise EmaxError(2, "the program emax is not found: put it on the PATH, or set EMAX to its path")
 
 
 def option_words(options: dict) -> list[str]:
-    """`reference_delay="none"` as `--reference-delay none`; lists with commas, True as a switch, None as nothing."""
+    """`reference_delay="none"` as `--reference-delay none`; lists with commas, True as a switch, None as nothing.
+
+    `label` is given once for each item of its list, as the program has it.
+    """
     words = []
     for name, value in options.items():
         if value is None or value is False:
             continue
-        words.append("--" + name.replace("_", "-"))
-        if value is not True:
-            is_list = isinstance(value, (list, tuple, numpy.ndarray))
-            words.append(",".join(str(item) for item in value) if is_list else str(value))
+        option = "--" + name.replace("_", "-")
+        is_list = isinstance(value, (list, tuple, numpy.ndarray))
+        if value is True:
+            words.append(option)
+        elif is_list and name == "label":
+            words += [word for item in value for word in (option, str(item))]
+        else:
+            words += [option, ",".join(str(item) for item in value) if is_list else str(value)]
     return words
 
 
@@ -82,10 +93,12 @@ def run_report(*arguments, program: str | None = None, **options) -> dict:
 
 
 def load_table(path) -> dict:
-    """A CSV table of the program: an array for each column, in its order. Lines that begin with # are left out."""
+    """A CSV table of the program: an array for each column, in its order; an empty field, as of a phase that was not
+    measured, is NaN. Lines that begin with # are left out."""
     with open(path, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(line for line in file if not line.startswith("#"))
-    columns = numpy.array(rows, dtype=float).reshape(-1, len(head)).T
+    numbers = [[float(field) if field else numpy.nan for field in row] for row in rows]
+    columns = numpy.array(numbers, dtype=float).reshape(-1, len(head)).T
     return dict(zip(head, columns))
 
 

@@ -42,6 +42,28 @@ class PythonTest(unittest.TestCase):
     def test_options_as_words(self):
         words = emax.option_words({"model": numpy.array([1.0, 2.5]), "adaptive": True, "json": False, "note": None, "limit": 1})
         self.assertEqual(words, ["--model", "1.0,2.5", "--adaptive", "--limit", "1"])
+        self.assertEqual(emax.option_words({"label": ["A=1", "B=2, 3"]}), ["--label", "A=1", "--label", "B=2, 3"])
+        labels = self.report(model=MODEL, trials=1000, trend="none", label=["a=1", "b=2, 3"])["labels"]
+        self.assertEqual((labels["a"], labels["b"]), ("1", "2, 3"))
+
+    def test_copy_without_a_program(self):
+        copy = self.directory / "emax.py"
+        copy.write_text((HERE / "emax.py").read_text(encoding="utf-8"), encoding="utf-8")
+        words = "import emax\ntry: emax.find_program()\nexcept emax.EmaxError as error: print(error.status, error)"
+        environment = {"PATH": "", "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
+        done = subprocess.run([sys.executable, "-B", "-c", words], cwd=self.directory, env=environment,
+                              capture_output=True, text=True, check=False)
+        self.assertEqual((done.stderr, done.stdout[:35]), ("", "2 the program emax is not found: pu"))
+        done = subprocess.run([sys.executable, "-B", "-c", "import emax; print(emax.find_program())"], cwd=self.directory,
+                              env=environment | {"EMAX": "/some/emax"}, capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout, "/some/emax\n")
+
+    def test_phases_that_were_not_measured_are_nan(self):
+        out = self.directory / "out"
+        self.report(points=PROJECT / "host_tests/data/tables/magnitude_only.csv", trials=1000, trend="none", out=out)
+        response = emax.load(out)["tables"]["frequency_response"]
+        self.assertTrue(numpy.isfinite(response["amplitude"]).all())
+        self.assertTrue(numpy.isnan(response["phase_deg"]).all())
 
     def test_what_becomes_an_array(self):
         found = emax.with_arrays(json.loads('{"a": [1, null, 3], "b": [[1, 2], [3, 4]], "c": [], "d": ["x", "y"], '
