@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -97,12 +98,28 @@ class PythonTest(unittest.TestCase):
         self.assertEqual(caught.exception.results["bench"]["fault"]["name"], "no device")
         self.assertEqual(len(caught.exception.results["bench"]["budget"]), caught.exception.results["bench"]["points"])
 
-    def test_example_of_the_readme(self):
-        readme = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
-        shown = re.search(r"^```\n\$ python3 host_tests/clients/fifty_sensors\.py\n((?:.*\n)*?)```$", readme, re.MULTILINE)
-        done = subprocess.run([sys.executable, "-B", HERE / "fifty_sensors.py"], env=os.environ | {"EMAX": PROGRAM},
+    def example(self, *words):
+        done = subprocess.run([sys.executable, "-B", *words], cwd=PROJECT, env=os.environ | {"EMAX": PROGRAM},
                               capture_output=True, text=True, check=False)
-        self.assertEqual((done.returncode, done.stderr, done.stdout), (0, "", shown[1]))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done.stdout
+
+    def test_examples_of_the_readme(self):
+        readme = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
+        shown = re.findall(r"^```\n\$ python3 (host_tests/clients/.*)\n((?:.*\n)*?)```$", readme, re.MULTILINE)
+        self.assertEqual(len(shown), 2)
+        for command, output in shown:
+            self.assertEqual(self.example(*command.split()), output, command)
+
+    def test_tables_that_are_refused_are_passed_by(self):
+        for name in ("handheld_160hz.csv", "khz.csv"):
+            shutil.copy(PROJECT / "host_tests/data/tables" / name, self.directory)
+        (self.directory / "bad.csv").write_text("f,A\n1,x\n", encoding="utf-8")
+        lines = self.example("host_tests/clients/tables_of_a_folder.py", self.directory).splitlines()
+        self.assertRegex(lines[1], "^bad.csv: emax: .*bad.csv:1: there is no uncertainty")
+        self.assertEqual(lines[2], "handheld_160hz.csv: the points determine S alone")
+        self.assertRegex(lines[3], r"^ +[0-9.]+ +[0-9.]+ +[0-9.]+ +0  khz.csv$")
+        self.assertEqual(len(lines), 4)
 
 
 if __name__ == "__main__":

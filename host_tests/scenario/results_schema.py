@@ -78,10 +78,11 @@ def faults_of_text(text) -> list[str]:
 
 
 def rows(schema, path=""):
-    """(name, may be null, description) of every member, in order."""
+    """(name, what it may be in the place of a value, description) of every member, in order."""
     for name, member in schema["properties"].items():
         types = member["type"] if isinstance(member["type"], list) else [member["type"]]
-        yield path + name, "null" in types, member["description"]
+        others = ", or null" * ("null" in types) + ", or missing" * (name not in schema["required"])
+        yield path + name, others, member["description"]
         inner = member.get("items", member)
         if "properties" in inner:
             yield from rows(inner, f"{path}{name}{'[]' if inner is not member else ''}.")
@@ -89,8 +90,7 @@ def rows(schema, path=""):
 
 def table() -> str:
     lines = ["| field | unit; meaning |", "|---|---|"]
-    lines += [f"| `{name}`{', or null' if null else ''} | {text.replace('|', chr(92) + '|')} |"
-              for name, null, text in rows(SCHEMA)]
+    lines += [f"| `{name}`{others} | {text.replace('|', chr(92) + '|')} |" for name, others, text in rows(SCHEMA)]
     return "\n".join(lines) + "\n"
 
 
