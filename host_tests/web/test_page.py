@@ -157,8 +157,8 @@ class Tables(PageTest):
             [
                 "Warning: T is much shorter than the settling time, so the error has not developed within T: give a T of T ms or"
                 " more.",
-                "Warning: T is much shorter than the settling time, so the error has not developed within T: give a T of T ms or"
-                " more.",
+                "Warning: T is much shorter than the settling time in band, so the error has not developed within T: give a T of T ms"
+                " or more.",
                 "Warning: fewer trials than rule (3) asks for; the intervals and the maximum are less certain than their"
                 " digits say.",
             ],

@@ -229,7 +229,7 @@ TEST(Report, SaysWhichSettlingTimeIsMeant) {
   EXPECT_TRUE(says(line_with(report, "5 % settling time"), "1.453582 ms"));
   EXPECT_TRUE(says(line_with(report, "5 % settling, in band"), "4.18"));
   EXPECT_TRUE(says(report, "T is much shorter than the settling time, so"));
-  EXPECT_TRUE(says(report, "T is much shorter than that of the in-band error, so"));
+  EXPECT_TRUE(says(report, "T is much shorter than the settling time in band, so"));
   EXPECT_FALSE(says(words_of(Warning::kShortTime, results), "in-band"));
   EXPECT_TRUE(says(words_of(Warning::kShortInBand, results), "in-band"));
 }

@@ -379,7 +379,7 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     const SettlingTime& settling = results.band_settling;
     if (results.settings.duration_s < kMuchShorter * settling.time_s) {
       write_settling_time("5 % settling, in band", settling, out);
-      write_short_time("that of the in-band error", settling, results, out);
+      write_short_time("the settling time in band", settling, results, out);
     }
   }
   if (results.matched.exists()) {
