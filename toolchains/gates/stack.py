@@ -10,7 +10,8 @@ that have this name, or those that INDIRECT_CALLS.TXT lists.
 
 Proven is the deepest chain from the reset on, plus the worst interrupt of each level of priority on top of it, plus the
 worst fault on top of that. Which handlers share a level, interrupt_levels.txt says; all others have one of their own.
-A trap handler of RISC-V must not let other interrupts through. Code that changes to another stack must fit between fault_stack_limit and fault_stack_top. Prints these chains
+A trap handler of RISC-V must not let other interrupts through. Code that changes to another stack must fit between
+fault_stack_limit and fault_stack_top. Prints these chains
 and exits with 1 if the image is over its budget, has recursion, an array on the stack whose size only the running
 program knows, or a call whose targets are not known.
 """

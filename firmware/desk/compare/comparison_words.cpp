@@ -192,7 +192,8 @@ void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) 
   if (!open.empty()) {
     notes.push_back(
         {"Told apart from no other, because the points leave the damping open: " + list_of(open) +
-             ". The figure is that of the nearest damping that a device may have" +
+             ". The figure is that of the estimate, or of the nearest damping that a device may "
+             "have" +
              ranges_of(open) + ".",
          true});
   }

@@ -247,8 +247,8 @@ const char* words_of(Warning warning, const EvaluationResults& results) noexcept
       return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
              "order over these frequencies, or the stated uncertainties are too small";
     case Warning::kOpenDamping:
-      return "the points do not determine beta: E is that of the nearest beta that a device may "
-             "have, and its range is wide";
+      return "the points do not determine beta: E is at the estimate, or at the nearest beta that "
+             "a device may have, and its range is wide";
     case Warning::kOnlyS:
       return "the points determine the sensitivity alone, so there is no maximum energy; measure "
              "to higher frequencies";
