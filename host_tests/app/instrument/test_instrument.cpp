@@ -295,9 +295,10 @@ TEST(Instrument, HasEveryCommandInBothForms) {
 
 TEST(Instrument, NamesWhatIsMissing) {
   InstrumentBench i;
-  const char* const queries[] = {
-      "CALC:ENER?", "CALC:MCAR?",  "CALC:TREN? 1ms,2ms", "CALC:REP?",       "CALC:AERR?",
-      "CALC:SETT?", "CALC:IMP? 0", "CALC:ENER:FPA?",     "CALC:ENER:EVAL?", "CALC:MOD?"};
+  const char* const queries[] = {"CALC:ENER?",  "CALC:MCAR?",     "CALC:TREN? 1ms,2ms",
+                                 "CALC:REP?",   "CALC:AERR?",     "CALC:SETT?",
+                                 "CALC:IMP? 0", "CALC:ENER:FPA?", "CALC:ENER:EVAL?",
+                                 "CALC:MOD?",   "CALC:MCAR:HIST?"};
   for (const char* query : queries) {
     EXPECT_EQ(error_of(i, query), "-230,\"Data corrupt or stale;no device: CALC:MOD, or INIT:SWE\"")
         << query;
@@ -382,6 +383,19 @@ TEST(Instrument, AnswersTheTrialsAndTheTrend) {
   EXPECT_LT(trials[6], trials[9]);
   EXPECT_LE(trials[11] - trials[10], (trials[9] - trials[8]) * (1.0 + 1e-12));
   EXPECT_EQ(trials[12], 0.0);
+  const std::vector<double> bins = i.numbers("CALC:MCAR:HIST?");
+  ASSERT_EQ(bins.size(), 66U);
+  EXPECT_LT(bins[0], trials[8]);
+  EXPECT_EQ(bins[1], trials[1]);
+  // Each trial once; their mean within half a bin.
+  double count = 0.0;
+  double moment = 0.0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    count += bins[k + 2];
+    moment += bins[k + 2] * (bins[0] + (bins[1] - bins[0]) * (static_cast<double>(k) + 0.5) / 64.0);
+  }
+  EXPECT_EQ(count, 2000.0);
+  EXPECT_NEAR(moment / count, trials[6], 0.5 * (bins[1] - bins[0]) / 64.0);
   const std::vector<double> trend = i.numbers("CALC:TREN? 2ms,10ms");
   ASSERT_EQ(trend.size(), 4U);
   EXPECT_NEAR(trend[2], 0.005115251359876, 1e-15);

@@ -137,6 +137,7 @@ struct InstrumentCommands {
   /// The item's time is looked for among all that were given.
   static void answer_impulse(Instrument& i, Call& call) noexcept;
   static void monte_carlo(Instrument& i, Call& call) noexcept;
+  static void histogram(Instrument& i, Call& call) noexcept;
   static void trend(Instrument& i, Call& call) noexcept;
   static void trend_times(Instrument& i, Call& call) noexcept;
   static bool take_trend(Instrument& i, Call& call) noexcept;

@@ -526,6 +526,18 @@ void InstrumentCommands::monte_carlo(Instrument& i, Call& call) noexcept {
   out.integer(results_of(i).guard.disagreements);
 }
 
+void InstrumentCommands::histogram(Instrument& i, Call& call) noexcept {
+  const TrialResults& trials = results_of(i).trials;
+  if (call.stage() == Call::Stage::kItem) {
+    call.answer().integer(trials.histogram()[call.item()]);
+    return;
+  }
+  if (i.provide(call, Goal::kMonteCarlo)) {
+    call.answer().number(trials.result.minimum).number(trials.result.maximum);
+    call.answer_items(kHistogramRows);
+  }
+}
+
 void InstrumentCommands::trend(Instrument& i, Call& call) noexcept {
   if (call.stage() == Call::Stage::kItem) {
     call.answer().number(results_of(i).trend_points()[call.item()].energy_v2s);

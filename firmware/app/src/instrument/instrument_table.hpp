@@ -112,6 +112,7 @@ inline constexpr scpi::Command<Instrument> kEnergy[] = {
 
 inline constexpr scpi::Command<Instrument> kUncertainty[] = {
     {"CALCulate:MCARlo", kQuery, "", "trials,E_max,S,f0,beta,trial,mean,u,low,high,shortest_low,shortest_high,disagreements", kPlain, C::monte_carlo},
+    {"CALCulate:MCARlo:HISTogram", kQuery, "", "low,high,n1,...,n64: how many trials in equal bins of E", kPlain, C::histogram},
     {"CALCulate:UNCertainty", kQuery, "", "Of E, by JCGM 101 with normal parameters: u,U,low,high,shortest_low,shortest_high,redrawn", kPlain, C::uncertainty},
     {"CALCulate:TRENd", kQuery, "[<T1>,...]", "slope,intercept,E1,E2,... over these times; without them those of before", kPlain, C::trend},
     {"CALCulate:REPort", kQuery, "[<device>,<serial>,<operator>,<date>,<note>]", "The text of emax report, as a block; labels are strings, in ASCII", kPlain, C::report_text},
