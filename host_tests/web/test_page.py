@@ -559,7 +559,7 @@ class Readers(PageTest):
         energy = self.results()["energy"]
         # Every value of a picture stands in its table, which is made once it is opened.
         self.browser.evaluate("document.querySelectorAll('.numbers-of-plot').forEach((part) => { part.open = true; })")
-        self.wait_for("document.querySelectorAll('.numbers-of-plot table').length === 4")
+        self.wait_for("document.querySelectorAll('.numbers-of-plot table').length === 5")
         tables = self.browser.evaluate(
             "[...document.querySelectorAll('.numbers-of-plot table')].map((table) => [...table.rows].map((row) =>"
             " [...row.cells].map((cell) => cell.textContent)))"
@@ -581,7 +581,18 @@ class Readers(PageTest):
         )
         self.assertEqual(len(drawn), 1)
         self.assertNotEqual(drawn[0], "none")
+        # How many trials came to which energy, as the program's file has it.
         head, *rows = tables[3]
+        self.assertEqual(head, ["E in V² s", "trials: trials"])
+        self.succeed("report", "--points", DATA / "tables" / "plain.csv", "--trials", "1000", "--trend", "none", "--out", "out")
+        lines = (self.directory / "out" / "histogram.csv").read_text(encoding="ascii").splitlines()[1:]
+        bins = [list(map(float, line.split(","))) for line in lines]
+        self.assertEqual([int(row[1]) for row in rows], [count for _, _, count in bins])
+        for row, (low, high, _) in zip(rows, bins):
+            self.assertAlmostEqual(number(row[0]) / (0.5 * (low + high)), 1.0, delta=1e-5)  # Six digits.
+        drawn = self.browser.evaluate("document.querySelectorAll('#certificate .column').length")
+        self.assertEqual(drawn, len(bins))
+        head, *rows = tables[4]
         column = head.index("none exceeds: E in V² s")
         bounds = [number(row[column]) for row in rows if row[column]]
         self.assertEqual(len(bounds), 1)

@@ -501,7 +501,7 @@ class App {
       Object.assign(device, await this.job.results());
     } catch (error) {
       problems.push(error.message);
-      Object.assign(device, {json: '', report: '', impulse: []});
+      Object.assign(device, {json: '', report: '', impulse: [], histogram: []});
       device.fit = await this.job.sensitivity();
     }
     device.settings = this.learnt;

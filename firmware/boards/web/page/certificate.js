@@ -90,6 +90,9 @@ function setPictures(place, device, results) {
   if (device.impulse?.length > 0) {
     new Plot(pictures, impulsePicture(device.impulse, results.impulse_response ?? {}));
   }
+  if (results.monte_carlo && device.histogram?.[1] > device.histogram?.[0]) {
+    new Plot(pictures, histogramPicture(device.histogram, results));
+  }
   if (results.trend?.points?.length > 1) {
     new Plot(pictures, trendPicture(results));
   }

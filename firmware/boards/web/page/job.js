@@ -91,7 +91,17 @@ class Job {
   async results() {
     const report = await this.scpi.ask('CALC:REP?', SLOW_MS);
     const json = await this.scpi.ask('FETC:JSON?', SLOW_MS);
-    return {report, json, impulse: await this.impulse(JSON.parse(json))};
+    const results = JSON.parse(json);
+    return {report, json, impulse: await this.impulse(results), histogram: await this.histogram(results)};
+  }
+
+  // As CALCulate:MCARlo:HISTogram?; nothing without trials, and from firmware that has no such question yet.
+  async histogram({monte_carlo: trials}) {
+    if (!trials) {
+      return [];
+    }
+    const {answers} = await this.scpi.exchange('CALC:MCAR:HIST?', SLOW_MS);
+    return (answers[0] ?? '').split(',').filter(Boolean).map(Number);
   }
 
   // What there is of a fit where the points give no more than S; nothing if there is not even that.

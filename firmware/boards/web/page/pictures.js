@@ -2,6 +2,7 @@
 
 const RESPONSE_STEPS = 240;
 const MOST_ERROR_STEPS = 1000;
+const CLOSE = 1e-3;
 const MOST_OFF = 0.01;  // Of the energy of an error that is shown; no eye sees less.
 
 // Points as FETCh:TRACe? has them: f, A, phi, U(A), U(phi) with k = 2; an unknown phase has a huge U.
@@ -120,6 +121,21 @@ function impulsePicture(whole, {settling_time_s: settling}) {
   return {title: 'Impulse response of the error', x: {label: 'time', unit: 'ms'},
     panels: [{label: 'k', unit: 'V/(m/s)', zero: true,
       series: [{name: 'sensor minus filter', kind: 'line', points: impulse.map(([t, k]) => [1e3 * t, k])}]}]};
+}
+
+// bins: low, high and the counts between them. Of energies that hardly differ, the difference to E is shown.
+function histogramPicture([low, high, ...counts], {energy, monte_carlo: trials}) {
+  const isClose = high - low < CLOSE * high;
+  const shift = (value) => (isClose ? value - energy.E : value);
+  const width = (high - low) / counts.length;
+  const interval = `${shown(100 * trials.probability)} % coverage interval`;
+  return {title: 'Energy within the uncertainties', note: `Of ${trials.trials} devices drawn at random within them (Monte Carlo).`,
+    x: {label: isClose ? 'E minus E at the estimates' : 'E', unit: 'V² s', digits: 6,
+      range: [shift(Math.min(low, energy.E)), shift(Math.max(high, energy.E))],
+      marks: [{name: 'E at the estimates', at: shift(energy.E)}]},
+    panels: [{label: 'trials', unit: '', from: 0,
+      series: [{name: 'trials', kind: 'bars', width, inside: {name: interval, range: trials.interval.map(shift)},
+        points: counts.map((count, i) => [shift(low + (i + 0.5) * width), count])}]}]};
 }
 
 function trendPicture({trend, energy}) {

@@ -97,8 +97,10 @@ function rangeOf(values, isLog) {
 
 // One picture in its own figure.
 //
-// picture: {title, note, x: {label, unit, isLog}, panels: [{title?, label, unit, isLog, zero, series: [...]}]}
-// series: {name, kind: 'line' | 'points' | 'steps', points: [[x, y, low?, high?], ...]}, points ascending in x.
+// picture: {title, note, x: {label, unit, isLog, digits?, range?, marks?: [{name, at}]}, panels: [{title?, label, unit, isLog, zero,
+// from?, series: [...]}]}; marks are strokes through all panels.
+// series: {name, kind: 'line' | 'points' | 'steps' | 'bars', points: [[x, y, low?, high?], ...]}, points ascending in x; of
+// bars also their width, and inside: {name, range} for those that are darker.
 class Plot {
   constructor(place, picture) {
     this.picture = picture;
@@ -143,6 +145,16 @@ class Plot {
         }
       });
     }
+    const further = [
+      ...this.picture.panels.flatMap((panel) => panel.series.filter((s) => s.inside).map((s) => [s.inside.name, 'inside'])),
+      ...(this.picture.x.marks ?? []).map((mark) => [mark.name, 'k1 mark']),
+    ];
+    for (const [name, className] of further) {
+      const item = document.createElement('li');
+      item.className = `key ${className}`;
+      item.textContent = name;
+      list.append(item);
+    }
     if (this.picture.note) {
       const item = document.createElement('li');
       item.textContent = this.picture.note;
@@ -183,7 +195,7 @@ class Plot {
     const height = TOP + panels.length * (PANEL_HEIGHT + GAP) - GAP + BOTTOM;
     const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, width, height, 'aria-hidden': 'true'});
     const xs = panels.flatMap((panel) => panel.series.flatMap((series) => series.points.map((point) => point[0])));
-    const [least, most] = x.isLog ? rangeOf(xs, true) : [Math.min(...xs), Math.max(...xs)];
+    const [least, most] = x.isLog ? rangeOf(xs, true) : x.range ?? [Math.min(...xs), Math.max(...xs)];
     this.x = new Scale(least, most, x.isLog, LEFT, width - RIGHT);
     panels.forEach((panel, number) => this.drawPanel(svg, panel, number, width));
     const bottom = height - BOTTOM;
@@ -196,6 +208,9 @@ class Plot {
     });
     svgElement('text', {x: (LEFT + width - RIGHT) / 2, y: height - 4, 'text-anchor': 'middle', class: 'axis-name'}, svg)
       .textContent = withUnit(x, power);
+    for (const mark of x.marks ?? []) {
+      svgElement('line', {x1: this.x.at(mark.at), x2: this.x.at(mark.at), y1: TOP, y2: bottom, class: 'line s1 mark'}, svg);
+    }
     this.cursor = svgElement('line', {y1: TOP, y2: bottom, class: 'cursor', visibility: 'hidden'}, svg);
     this.box.replaceChildren(svg);
     this.width = width;
@@ -209,7 +224,7 @@ class Plot {
     const bottom = top + PANEL_HEIGHT;
     const ys = panel.series.flatMap((series) => series.points.flatMap((point) => point.slice(1)));
     const [least, most] = rangeOf([...ys, ...(panel.zero ? [0] : []), ...(panel.also ? [panel.also] : [])], panel.isLog);
-    const y = new Scale(least, most, panel.isLog, bottom, top);
+    const y = new Scale(panel.from ?? least, most, panel.isLog, bottom, top);
     const ticks = y.ticks(5);
     const {power, words} = labelsOf(ticks, panel.isLog);
     ticks.forEach((tick, i) => {
@@ -229,6 +244,10 @@ class Plot {
 
   drawSeries(svg, series, k, y) {
     const places = series.points.filter((p) => Number.isFinite(p[1])).map((p) => [this.x.at(p[0]), y.at(p[1]), p]);
+    if (series.kind === 'bars') {
+      this.drawBars(svg, series, k, y);
+      return;
+    }
     if (series.kind === 'points') {
       for (const [px, py, point] of places) {
         if (point.length > 3) {
@@ -244,6 +263,15 @@ class Plot {
       path += i === 0 ? `M${px.toFixed(2)} ${py.toFixed(2)}` : `${step}L${px.toFixed(2)} ${py.toFixed(2)}`;
     });
     svgElement('path', {d: path, class: `line s${k}`}, svg);
+  }
+
+  drawBars(svg, {points, width, inside}, k, y) {
+    for (const [x, count] of points) {
+      const [left, right] = [this.x.at(x - width / 2), this.x.at(x + width / 2)];
+      const isInside = x > inside.range[0] && x < inside.range[1];
+      svgElement('rect', {x: left, y: y.at(count), width: Math.max(right - left - 0.5, 0.5), height: y.at(0) - y.at(count),
+        class: `column c${k}${isInside ? ' inside' : ''}`}, svg);
+    }
   }
 
   pointTo(event) {
@@ -275,12 +303,13 @@ class Plot {
       return;
     }
     const value = this.xs[at];
-    const words = [`${this.picture.x.label} ${shown(value, 5)} ${this.picture.x.unit}`];
+    const {label, unit, digits} = this.picture.x;
+    const words = [`${label} ${shown(value, digits ?? 5)} ${unit}`];
     for (const panel of this.picture.panels) {
       for (const series of panel.series) {
         const point = nearestPoint(series, value);
         if (point) {
-          words.push(`${series.name} ${shown(point[1], 5)} ${panel.unit}`);
+          words.push(`${series.name} ${shown(point[1], 5)} ${panel.unit}`.trimEnd());
         }
       }
     }
@@ -311,7 +340,7 @@ function labelsOf(ticks, isLog) {
 
 // Of steps the value from there on; of lines the nearest; of points the one at just that place.
 function nearestPoint(series, x) {
-  if (series.kind === 'points') {
+  if (series.kind === 'points' || series.kind === 'bars') {
     return series.points.find((point) => point[0] === x);
   }
   if (series.kind === 'steps') {
