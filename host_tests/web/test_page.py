@@ -361,6 +361,37 @@ class Devices(PageTest):
         self.assertEqual(self.speak("CALC:FILT:ORD?"), ["10"])
         self.assertEqual(self.browser.evaluate("Object.keys(localStorage).filter((k) => k.includes('device.'))"), [])
 
+    def test_stay_until_the_page_is_closed_where_the_browser_keeps_nothing(self):
+        forbidden = "Object.defineProperty(window, 'localStorage', {get() { throw new DOMException('It is forbidden.', 'SecurityError'); }});"
+        script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", source=forbidden)["identifier"]
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:CALC:TREN:TIME 0.001,0.002")
+        self.drop(*(DATA / "devices" / name for name in ["piezo_a.csv", "piezo_b.csv"]))
+        self.assertIn("the browser does not keep this: It is forbidden.; it is gone once the page is closed", self.text("problem"))
+        self.submit("compare")
+        self.wait_for("!document.getElementById('comparison').hidden")
+        self.idle()
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.ranking li').length"), 2)
+        self.assert_quiet()
+        self.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+        # The same where it is full, until there is room again.
+        names = "[...document.querySelectorAll('#device-list tbody tr')].map((row) => row.cells[1].textContent)"
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:CALC:TREN:TIME 0.001,0.002")
+        self.drop(DATA / "devices" / "piezo_a.csv")
+        self.browser.evaluate(
+            "(() => { for (let size = 1 << 22; size >= 1; size >>= 1) { try { for (let i = 0; ; ++i) {"
+            " localStorage.setItem(`full.${size}.${i}`, 'x'.repeat(size)); } } catch {} } })()"
+        )
+        self.drop(DATA / "devices" / "piezo_b.csv")
+        self.assertIn("it is gone once the page is closed", self.text("problem"))
+        self.assertEqual(self.browser.evaluate(names), ["piezo_a", "piezo_b"])
+        self.browser.evaluate("Object.keys(localStorage).filter((k) => k.startsWith('full')).forEach((k) => localStorage.removeItem(k))")
+        self.browser.evaluate("window.confirm = () => true; document.querySelector('#device-list .delete').click()")
+        self.open()
+        self.assertEqual(self.browser.evaluate(names), ["piezo_b"])
+        self.assert_quiet()
+
     def test_by_their_parameters_need_numbers_with_points(self):
         self.open()
         for field, value in {"model-s": "1,037", "model-f0": "4073", "model-beta": "0.3"}.items():
