@@ -13,6 +13,14 @@ add_test(NAME ${configuration}.gates.emax_web
 add_test(NAME ${configuration}.gates.emax_web_desk
   COMMAND ${gate} --heap --exports ${desk_exports} ${tree}/emax_web_desk.wasm)
 
+# No build of the PC has these sources, so they are looked at as they are compiled here.
+file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} ${EMAX_BOARD_FOLDER}/desk/*.cpp ${EMAX_BOARD_FOLDER}/instrument/*.cpp)
+foreach(source IN LISTS sources)
+  add_test(NAME style.tidy.${source}
+    COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${tree} ${PROJECT_SOURCE_DIR}/${source})
+  list(APPEND tests style.tidy.${source})
+endforeach()
+
 set(folder ${PROJECT_SOURCE_DIR}/host_tests/web)
 foreach(suite IN ITEMS test_page.py test_serial.py)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${suite})
