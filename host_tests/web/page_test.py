@@ -58,6 +58,15 @@ class PageTest(ProgramTest):
     def click(self, element: str) -> None:
         self.browser.evaluate(f"document.getElementById('{element}').click()")
 
+    def click_at(self, stage: str, element: str) -> None:
+        """Clicks in the page itself, at the first word of this stage: it may be over before anybody here has seen it."""
+        self.browser.evaluate(
+            "(() => { const stage = document.getElementById('stage'); const watch = new MutationObserver(() => {"
+            f" if (stage.textContent.startsWith({json.dumps(stage)})) {{ watch.disconnect();"
+            f" document.getElementById('{element}').click(); }} }});"
+            " watch.observe(stage, {childList: true, characterData: true, subtree: true}); })()"
+        )
+
     def fill(self, element: str, value: str) -> None:
         self.browser.evaluate(
             f"(() => {{ const field = document.getElementById('{element}'); field.value = {json.dumps(value)};"

@@ -175,10 +175,8 @@ class Tables(PageTest):
         self.open()
         self.speak("CALC:MCAR:TRI 1000000")
         names = ["plain.csv", "khz.csv", "mv_per_g.csv"]
-        self.browser.choose_files("#files", [DATA / "tables" / name for name in names])
-        self.wait_for("/^1 of 3: plain.csv: computing: /.test(document.getElementById('stage').textContent)")
-        self.click("abort")
-        self.idle()
+        self.click_at("1 of 3: plain.csv: computing: ", "abort")
+        self.drop(*(DATA / "tables" / name for name in names))
         problem = self.text("problem")
         self.assertTrue(problem.startswith("plain: stopped before its figures were known"), problem)
         self.assertTrue(problem.endswith("not read: khz.csv, mv_per_g.csv"), problem)
@@ -191,6 +189,49 @@ class Tables(PageTest):
         self.assertEqual(self.text("problem"), "")
         self.assertEqual(self.browser.evaluate("document.activeElement.id"), "result")
         self.assertNotIn("Not evaluated yet", self.text("certificate"))
+        self.assert_quiet()
+
+    def test_stop_whatever_is_done_with_them(self):
+        self.open()
+        self.speak("CALC:MCAR:TRI 1000;:CALC:TREN:TIME 0.001,0.002")
+        tables = [DATA / "tables" / name for name in ["plain.csv", "khz.csv"]]
+        # Before there is anything to stop: what was read is kept, and nothing is computed.
+        self.click_at("reading plain.csv", "abort")
+        self.drop(*tables)
+        problem = self.text("problem")
+        self.assertTrue(problem.startswith("plain: stopped before its figures were known"), problem)
+        self.assertTrue(problem.endswith("not read: khz.csv"), problem)
+        self.assertIn("Not evaluated yet", self.text("certificate"))
+        # Once all is computed: that is kept, too.
+        self.click_at("fetching", "abort")
+        self.drop(*tables)
+        self.assertEqual(self.text("problem"), "stopped; not read: khz.csv")
+        before = self.results()
+        self.assertEqual(before["labels"]["device"], "plain (2)")
+        # What was known before stays known.
+        self.click_at("computing: ", "abort")
+        self.click("again")
+        self.idle()
+        self.assertEqual(self.text("problem"), "plain (2): stopped; its figures are those of before")
+        self.assertEqual(self.results(), before)
+        self.assert_quiet()
+
+    def test_that_are_far_too_large_are_refused(self):
+        self.open()
+        row = "{},1,0,0.01,1\n"
+        for name, content, words in [
+            ("big.csv", row.format(1) * 800_000, "big.csv: larger than 1 MiB; expected a table of at most 1024 points"),
+            ("big.json", '{"version": "' + "x" * 10_000_000, "big.json: larger than 1 MiB; expected a results.json of emax"),
+        ]:
+            path = self.directory / name
+            path.write_text(content, encoding="ascii")
+            self.drop(path)
+            self.assertEqual(self.text("problem"), words)
+        path = self.directory / "long.csv"
+        path.write_text("".join(row.format(100 + i) for i in range(1500)), encoding="ascii")
+        line = self.refuse(["report", "--points", path.name], path.name).removeprefix("emax: ").rstrip("\n")
+        self.drop(path)
+        self.assertEqual(self.text("problem"), line)
         self.assert_quiet()
 
     def test_give_the_sensitivity_alone_where_they_say_no_more(self):

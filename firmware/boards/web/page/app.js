@@ -3,7 +3,7 @@
 const element = (id) => document.getElementById(id);
 
 const STAGES = {sweep: 'sweeping', idle: 'done'};
-const MOST_TABLE_BYTES = 1 << 20;
+const MOST_BYTES = 1 << 20;
 const MOST_LOG = 20000;
 const LONG_MS = 10000;
 
@@ -13,11 +13,19 @@ const PARAMETERS = [['model-s', 'S'], ['model-f0', 'f0'], ['model-beta', 'β']];
 const UNCERTAINTIES = [['model-us', 'u(S)'], ['model-uf0', 'u(f0)'], ['model-ubeta', 'u(β)']];
 const WORKBOOKS = ['504b0304', 'd0cf11e0'];  // .xlsx and .ods, .xls
 
-// Somebody has pressed Stop.
-class Stopped extends Error {}
-
 function isWorkbook(bytes) {
   return WORKBOOKS.includes([...bytes.slice(0, 4)].map((byte) => byte.toString(16).padStart(2, '0')).join(''));
+}
+
+async function bytesOf(file, expected) {
+  if (file.size > MOST_BYTES) {
+    throw new Error(`${file.name}: larger than 1 MiB; expected ${expected}`);
+  }
+  try {
+    return new Uint8Array(await file.arrayBuffer());
+  } catch (error) {
+    throw new Error(`${file.name}: not to be read, or a folder (${error.message}); choose the files in it`);
+  }
 }
 
 // What stands in these fields, each a number; a comma could be either, so it is refused. fields: [id, name].
@@ -119,6 +127,9 @@ class App {
     }
     this.setBusy(true);
     this.complain('');
+    if (this.job) {
+      this.job.isStopped = false;
+    }
     try {
       await act();
     } catch (error) {
@@ -334,13 +345,11 @@ class App {
         taken.push(file.name.toLowerCase().endsWith('.json') ? await this.takeResults(file) : await this.takeTable(file));
       } catch (error) {
         problems.push(error.message);
-        const left = files.slice(i + 1).map((other) => other.name);
-        if (error instanceof Stopped && left.length > 0) {
-          problems.push(`not read: ${left.join(', ')}`);
-        }
-        if (error instanceof Stopped) {
-          break;
-        }
+      }
+      const left = files.slice(i + 1).map((other) => other.name);
+      if (this.job?.isStopped && left.length > 0) {
+        problems.push(`stopped; not read: ${left.join(', ')}`);
+        break;
       }
     }
     this.batch = '';
@@ -354,10 +363,7 @@ class App {
   }
 
   async takeTable(file) {
-    if (file.size > MOST_TABLE_BYTES) {
-      throw new Error(`${file.name}: larger than 1 MiB; expected a table of at most 1024 points`);
-    }
-    const bytes = new Uint8Array(await file.arrayBuffer());
+    const bytes = await bytesOf(file, 'a table of at most 1024 points');
     if (isWorkbook(bytes)) {
       throw new Error(`${file.name}: a workbook, not a table as text; in Excel, save it as CSV (File, Save As, CSV UTF-8)`);
     }
@@ -381,7 +387,7 @@ class App {
 
   // A results.json of the program or of this page, to compare with.
   async takeResults(file) {
-    const json = await file.text();
+    const json = new TextDecoder().decode(await bytesOf(file, 'a results.json of emax'));
     let results = null;
     try {
       results = JSON.parse(json);
@@ -426,7 +432,6 @@ class App {
     const points = [];
     let plot = null;
     element('growing').replaceChildren();
-    this.job.isStopped = false;
     this.held = null;
     let problems = [];
     let broken = null;
@@ -474,27 +479,13 @@ class App {
   }
 
   async evaluate(device) {
-    this.job.isStopped = false;
-    let problems = [];
-    const began = Date.now();
-    let most = 0;
-    try {
-      problems = await this.job.evaluate((percent, stage) => {
-        most = Math.max(most, percent);
-        const advice = Date.now() - began > LONG_MS ? '; fewer trials are quicker (Monte Carlo, in 2)' : '';
-        this.progress(most, `${this.batch}computing: ${stage}${advice}`);
-      });
-    } catch (error) {
-      if (!(error instanceof Refusal)) {
-        throw error;
-      }
-      problems = [error.message];
-    }
+    const problems = await this.compute();
     if (this.job.isStopped) {
       this.progress(0, '');
       this.showDevice(device);
-      throw new Stopped(`${device.labels.device}: stopped before its figures were known; what is known of it is kept, and ` +
-        '"Evaluate again" computes them');
+      const words = device.json ? 'stopped; its figures are those of before' :
+        'stopped before its figures were known; what is known of it is kept, and "Evaluate again" computes them';
+      throw new Error(`${device.labels.device}: ${words}`);
     }
     this.progress(100, 'fetching the results');
     try {
@@ -510,6 +501,27 @@ class App {
     this.remember();
     if (problems.length > 0) {
       throw new Error(`${device.labels.device}: ${[...new Set(problems)].join('; ')}`);
+    }
+  }
+
+  // Returns what went wrong, in the instrument's words.
+  async compute() {
+    if (this.job.isStopped) {
+      return [];  // While its points were read.
+    }
+    const began = Date.now();
+    let most = 0;
+    try {
+      return await this.job.evaluate((percent, stage) => {
+        most = Math.max(most, percent);
+        const advice = Date.now() - began > LONG_MS ? '; fewer trials are quicker (Monte Carlo, in 2)' : '';
+        this.progress(most, `${this.batch}computing: ${stage}${advice}`);
+      });
+    } catch (error) {
+      if (!(error instanceof Refusal)) {
+        throw error;
+      }
+      return [error.message];
     }
   }
 

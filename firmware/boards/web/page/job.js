@@ -37,9 +37,12 @@ class Job {
     await this.sendLines(lines);
   }
 
+  // What runs, and what would be started next.
   stop() {
     this.isStopped = true;
-    this.scpi.abort();
+    if (!this.scpi.ended) {
+      this.scpi.abort();
+    }
   }
 
   // Until nothing of `mask` runs any more. onstep: percent, stage, number of points.
@@ -56,6 +59,9 @@ class Job {
       await onstep(Number(percent), stage, Number(points), runs);
       if (!runs) {
         return problems;
+      }
+      if (this.isStopped) {
+        this.scpi.abort();  // The one before may have overtaken what began this.
       }
       await new Promise((resolve) => setTimeout(resolve, this.pause));
     }
