@@ -232,6 +232,11 @@ class Tables(PageTest):
         line = self.refuse(["report", "--points", path.name], path.name).removeprefix("emax: ").rstrip("\n")
         self.drop(path)
         self.assertEqual(self.text("problem"), line)
+        # Beyond the memory of the module that reads, which begins anew with the next table.
+        longest = self.directory / "longest.csv"
+        longest.write_text("1,2\n" * 200_000, encoding="ascii")
+        self.drop(longest, path)
+        self.assertEqual(self.text("problem"), f"longest.csv: this takes more memory than the page has for it — {line}")
         self.assert_quiet()
 
     def test_give_the_sensitivity_alone_where_they_say_no_more(self):

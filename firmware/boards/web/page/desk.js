@@ -20,7 +20,8 @@ class Desk {
       this.worker.onerror = () => {
         this.worker.terminate();
         this.worker = null;
-        reject(new Error('this takes more memory than the page has for it'));
+        const name = words[0] === 'table' ? `${words[1]}: ` : '';
+        reject(new Error(`${name}this takes more memory than the page has for it`));
       };
       this.worker.onmessage = ({data}) => {
         if (data.status === 0) {
