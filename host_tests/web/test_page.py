@@ -408,7 +408,10 @@ class Devices(PageTest):
         self.assertEqual(self.browser.evaluate("Object.keys(localStorage).filter((k) => k.includes('device.'))"), [])
 
     def test_stay_until_the_page_is_closed_where_the_browser_keeps_nothing(self):
-        forbidden = "Object.defineProperty(window, 'localStorage', {get() { throw new DOMException('It is forbidden.', 'SecurityError'); }});"
+        forbidden = (
+            "Object.defineProperty(window, 'localStorage',"
+            " {get() { throw new DOMException('It is forbidden.', 'SecurityError'); }});"
+        )
         script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", source=forbidden)["identifier"]
         self.open()
         self.speak("CALC:MCAR:TRI 1000;:CALC:TREN:TIME 0.001,0.002")
@@ -432,7 +435,9 @@ class Devices(PageTest):
         self.drop(DATA / "devices" / "piezo_b.csv")
         self.assertIn("it is gone once the page is closed", self.text("problem"))
         self.assertEqual(self.browser.evaluate(names), ["piezo_a", "piezo_b"])
-        self.browser.evaluate("Object.keys(localStorage).filter((k) => k.startsWith('full')).forEach((k) => localStorage.removeItem(k))")
+        self.browser.evaluate(
+            "Object.keys(localStorage).filter((k) => k.startsWith('full')).forEach((k) => localStorage.removeItem(k))"
+        )
         self.browser.evaluate("window.confirm = () => true; document.querySelector('#device-list .delete').click()")
         self.open()
         self.assertEqual(self.browser.evaluate(names), ["piezo_b"])

@@ -97,8 +97,8 @@ function rangeOf(values, isLog) {
 
 // One picture in its own figure.
 //
-// picture: {title, note, x: {label, unit, isLog, digits?, range?, marks?: [{name, at}]}, panels: [{title?, label, unit, isLog, zero,
-// from?, series: [...]}]}; marks are strokes through all panels.
+// picture: {title, note, x: {label, unit, isLog, digits?, range?, marks?: [{name, at}]},
+// panels: [{title?, label, unit, isLog, zero, from?, series: [...]}]}; marks are strokes through all panels.
 // series: {name, kind: 'line' | 'points' | 'steps' | 'bars', points: [[x, y, low?, high?], ...]}, points ascending in x; of
 // bars also their width, and inside: {name, range} for those that are darker.
 class Plot {
