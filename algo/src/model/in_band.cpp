@@ -57,10 +57,11 @@ Complex in_band_residue(const Accelerometer& device, const ReferenceFilter& filt
 Complex in_band_residue(const Accelerometer& device, const ReferenceFilter& filter,
                         const Mode& mode, double delay_s) noexcept {
   const double w0 = kTwoPi * device.natural_frequency_hz;
+  const double per_w0 = w0 > 0.0 ? 1.0 / w0 : 0.0;
   const double twice_damping = 2.0 * device.damping;
-  const Complex q = (1.0 / w0) * mode.pole;
+  const Complex q = per_w0 * mode.pole;
   const Complex z = delay_s * mode.pole;
-  const Complex d = (twice_damping / w0 - delay_s) * mode.pole;
+  const Complex d = ((w0 > 0.0 ? twice_damping / w0 : 0.0) - delay_s) * mode.pole;
   const Complex denominator = Complex{1.0, 0.0} + twice_damping * q + q * q;
   const Complex left = exp(-z) * (z * z * phi2(z) - d - q * q);
   const Complex offset{device.sensitivity - filter.gain, 0.0};

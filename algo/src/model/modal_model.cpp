@@ -59,26 +59,28 @@ Status ModalModel::set(const Accelerometer& device, const ReferenceFilter& filte
   if (!(delay_s >= 0.0) || !(delay_s * (kTwoPi * filter.band_hz) <= 1.0)) {
     return Status::kDelayTooLong;
   }
-  delay_s_ = delay_s;
-  delay_reach_ = delay_s > 0.0 ? reach_before_start(filter, delay_s) : 0.0;
-  delay_error_ = abs(delay_reach_);
+  take_delay(filter, delay_s);
   feedthrough_ = 0.0;
   take(device, filter, measure.criterion);
   return Status::kOk;
 }
 
-Status ModalModel::set_ideal(double sensitivity, const ReferenceFilter& filter,
-                             Criterion criterion) noexcept {
+Status ModalModel::set_ideal(double sensitivity, const ReferenceFilter& filter, Criterion criterion,
+                             double delay_s) noexcept {
   const bool is_in_band = criterion == Criterion::kInBandError;
   if (!(sensitivity > 0.0) || !is_finite(sensitivity) || (is_in_band && !(filter.gain > 0.0))) {
     return Status::kInvalidArgument;
   }
-  delay_s_ = 0.0;
-  delay_reach_ = 0.0;
-  delay_error_ = 0.0;
+  take_delay(filter, delay_s);
   feedthrough_ = is_in_band ? 0.0 : sensitivity;
   take(Accelerometer{sensitivity, 0.0, 0.0}, filter, criterion);
   return Status::kOk;
+}
+
+void ModalModel::take_delay(const ReferenceFilter& filter, double delay_s) noexcept {
+  delay_s_ = delay_s;
+  delay_reach_ = delay_s > 0.0 ? reach_before_start(filter, delay_s) : 0.0;
+  delay_error_ = abs(delay_reach_);
 }
 
 void ModalModel::take(const Accelerometer& device, const ReferenceFilter& filter,
@@ -163,23 +165,20 @@ void ModalModel::fill_residues() noexcept {
     }
     is_nothing_ = !is_ideal && count_ == 2 && is_same(modes_[0].pole, modes_[1].pole) &&
                   is_same(modes_[0].residue, -modes_[1].residue);
-  } else if (is_ideal) {
-    for (std::size_t i = 0; i < filter_.count; ++i) {
-      const Mode& mode = filter_.modes[i];
-      modes_[1 + i] = {mode.pole, (offset / filter_.gain) * mode.residue};
-    }
-    is_nothing_ = offset == 0.0;
   } else {
     static_gain_ = offset - filter_.gain * delay_reach_;
-    const Accelerometer device = with_simple_poles(device_, filter_);
+    const Accelerometer device = is_ideal ? device_ : with_simple_poles(device_, filter_);
     if (device.natural_frequency_hz != device_.natural_frequency_hz) {
       moved_by_ = change_by_move(device_);
     }
-    modes_[0] = {mode_of(device).pole, in_band_residue(device, filter_)};
+    if (!is_ideal) {
+      modes_[0] = {mode_of(device).pole, in_band_residue(device, filter_)};
+    }
     for (std::size_t i = 0; i < filter_.count; ++i) {
       const Mode& mode = filter_.modes[i];
       modes_[1 + i] = {mode.pole, in_band_residue(device, filter_, mode, delay_s_)};
     }
+    is_nothing_ = is_ideal && offset == 0.0 && delay_s_ == 0.0;
   }
   if (is_nothing_) {
     static_gain_ = 0.0;

@@ -254,6 +254,30 @@ TEST(IdealSensor, HasNoInBandError) {
   EXPECT_EQ(fast_switching_limit(model, 2e-3), 0.0);
 }
 
+TEST(IdealSensor, AGivenDelayIsItsError) {
+  // From the delay on it is S h(t) - G h(t - tau), h the filter of gain 1.
+  const double delay_s = 1e-4;
+  for (const int order : {2, 4, 10}) {
+    for (const double gain : {1.2, 1.0}) {
+      ModalModel model{};
+      const Butterworth filter = {order, 700.0, gain};
+      ASSERT_EQ(model.set_ideal(1.2, butterworth(filter), Criterion::kInBandError, delay_s),
+                Status::kOk);
+      EXPECT_FALSE(model.is_nothing());
+      EXPECT_EQ(model.delay_s(), delay_s);
+      const double peak = std::abs(model.peak().value);
+      for (const double time_s : {1.5e-4, 3e-4, 8e-4, 2e-3}) {
+        const double expected = 1.2 / gain * model.filter_impulse_response(time_s) -
+                                model.filter_impulse_response(time_s - delay_s);
+        // Rounding of poles of up to ten modes, whose residues cancel by some thousands.
+        EXPECT_NEAR(model.impulse_response(time_s), expected, 1e-10 * peak) << order;
+      }
+      // Settled, what an input of 1 leaves is S - G, but for what the continued filter starts with.
+      EXPECT_NEAR(model.static_gain(), 1.2 - gain, gain * 1.001 * model.delay_error() + 1e-15);
+    }
+  }
+}
+
 TEST(IdealSensor, ASensorInItsPlaceIsAFreshModel) {
   ModalModel model{};
   ASSERT_EQ(model.set_ideal(1.037, butterworth(kPaperFilter), Criterion::kIntegralSquareError),

@@ -33,6 +33,7 @@ Complex in_band_residue(const Accelerometer& device, const ReferenceFilter& filt
 /// The residue at a pole of the filter: r_f (Ka(p_f) - G e^(-p_f tau))/G, without loss of digits
 /// where the sensor follows a slow mode almost exactly.
 ///
+/// @param[in] device With an f0 of 0 the ideal one, Ka = S.
 /// @param[in] mode One of the filter's.
 /// @param[in] delay_s tau.
 Complex in_band_residue(const Accelerometer& device, const ReferenceFilter& filter,

@@ -92,12 +92,15 @@ class ModalModel {
 
   /// An ideal sensor in place of a real one: K = S at every frequency. It keeps a mode of residue 0
   /// in its place, and the error system passes part of its input at once (`feedthrough()`): the
-  /// baseline that an energy is compared with. No delay.
+  /// baseline that an energy is compared with.
   ///
   /// @param[in] sensitivity S in V/(m/s^2), finite and above 0.
+  /// @param[in] delay_s By which the reference of the in-band error is delayed, as `set()` has
+  ///   accepted it for a sensor; 0 for the other criteria. An ideal sensor has no delay of its own.
   /// @returns kOk, or kInvalidArgument (also for the in-band error and a filter without gain) and
   ///   nothing has changed.
-  Status set_ideal(double sensitivity, const ReferenceFilter& filter, Criterion criterion) noexcept;
+  Status set_ideal(double sensitivity, const ReferenceFilter& filter, Criterion criterion,
+                   double delay_s = 0.0) noexcept;
 
   /// Exchanges the sensor and keeps filter, criterion and delay: that of the sensor is the first
   /// sensor's. `set()` comes first.
@@ -189,6 +192,7 @@ class ModalModel {
   static constexpr std::size_t pair(std::size_t i, std::size_t j) noexcept {
     return j * (j + 1) / 2 + i;
   }
+  void take_delay(const ReferenceFilter& filter, double delay_s) noexcept;
   void take(const Accelerometer& device, const ReferenceFilter& filter,
             Criterion criterion) noexcept;
   void fill_modes() noexcept;

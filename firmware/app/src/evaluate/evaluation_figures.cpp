@@ -51,7 +51,10 @@ Status Evaluation::set_figure_model(ModalModel& model) const noexcept {
   const Settings& settings = results_.settings;
   const ReferenceFilter filter = reference_filter(results_);
   if (results_.stage == Stage::kIdeal) {
-    return model.set_ideal(device.sensitivity, filter, settings.criterion);
+    const bool has_delay = settings.criterion == Criterion::kInBandError &&
+                           settings.delay_choice == DelayChoice::kGiven;
+    return model.set_ideal(device.sensitivity, filter, settings.criterion,
+                           has_delay ? settings.delay_s : 0.0);
   }
   ReferenceDelay delay;
   if (results_.stage == Stage::kMatched) {
