@@ -249,6 +249,17 @@ class FigureValues(ProgramTest):
         self.assertAlmostEqual(float(row.group(3)), end, delta=0.03 * end + 0.001)
         self.assertIn("+-U says too little", text)
         self.assertIn("the same in all trials", text, "the delay stays at the estimate")
+        # The body says the same as the table, and so does results.json.
+        body = text[text.index("  Delay taken out"):]
+        body = body[:body.index("  Guard")]
+        self.assertNotRegex(body, r"U \(k = 2\)|Symmetric|Shortest")
+        low, high = map(float, re.search(r"Interval, in place of U +(\S+) to (\S+) V\^2 s", body).groups())
+        self.assertEqual(matched["instead_of_U_percent"][0], min(matched["shortest_percent"][0], matched["rms_percent"]))
+        self.assertEqual(matched["instead_of_U_percent"][1], max(matched["shortest_percent"][1], matched["rms_percent"]))
+        for energy, percent in zip([low, high], matched["instead_of_U_percent"]):
+            self.assertAlmostEqual(100 * math.sqrt(energy / 0.002), percent, delta=1e-6 * percent)
+        self.assertIsNone(band["instead_of_U_percent"], "U is the one to use there")
+        self.assertIn("None exceeds: proven at the estimates", text)
         page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
         self.assertRegex(page, r"0\.0001385 % of S.a; 95 % interval 0 to 0\.02\d %")
         for words in [text, page]:
@@ -291,6 +302,57 @@ class FigureValues(ProgramTest):
         # Long enough, and none.
         self.assertEqual(self.json_of("--model", PAPER, "--cutoff", "300", "--time", "0.015", "--trend", "none")["warnings"], [])
 
+    def test_time_below_the_settling_time_in_band_is_noted(self):
+        found = self.json_of("--model", PAPER, "--trend", "none")
+        self.assertEqual(found["warnings"], [], "half of it is no warning")
+        settling_ms = 1e3 * found["band"]["settling_time_s"]
+        self.assertGreater(settling_ms, 2.0)
+        text = self.succeed("report", "--model", PAPER, "--trend", "none")
+        in_band = text[text.index("IN-BAND ERROR"):]
+        self.assertIn(f"5 % settling, in band     {settling_ms:.6f} ms", in_band)
+        self.assertRegex(in_band, r"Note: T is shorter than the settling time in band, so the error has not developed within\n"
+                                  rf"  T: give a T of {math.ceil(settling_ms * 100) / 100} ms or more")
+        enough = self.succeed("report", "--model", PAPER, "--trend", "none", "--time", "0.0046")
+        self.assertNotIn("settling time in band", enough)
+
+    def test_delay_that_is_too_long_in_numbers(self):
+        most = f"(at most {1e6 / (2 * math.pi * 1000):.1f} us)"
+        self.assertIn(most, self.succeed("report", "--model", "1,400,0.7", "--trend", "none"))
+        self.refuse(["report", "--model", PAPER, "--criterion", "band", "--reference-delay", "1e-3"], most)
+
+    def test_ideal_sensor_with_a_delay_given(self):
+        # A sensor of 2 MHz and beta = 0.5 has a delay of 0.08 us and no other error that 100 us would not hide.
+        options = ["--criterion", "band", "--reference-delay", "1e-4", "--trend", "none"]
+        ideal = self.json_of("--model", PAPER, *options)["ideal"]
+        fast = self.json_of("--model", "1.037,200000,0.05", *options)["band"]["matched"]
+        self.assertAlmostEqual(ideal["rms_percent"], fast["rms_percent"], delta=0.002 * fast["rms_percent"])
+        text = self.succeed("report", "--model", PAPER, *options)
+        head = text[:text.index("WHAT WAS PUT IN")]
+        self.assertIn("In band, given delay taken out", head)
+        self.assertNotIn("constant delay", text)
+        self.assertRegex(head, rf"The first of an ideal sensor, K = S +{ideal['rms_percent']:.2f} ")
+        self.assertRegex(head, r"0 for an ideal sensor\n  with S = G, the filter's gain, but not with a delay given\.")
+        # Without a number the delay is the sensor's own, and an ideal one has none.
+        self.assertEqual(self.json_of("--model", PAPER, "--criterion", "band", "--trend", "none")["ideal"]["E"], 0)
+
+    def test_star_at_the_rows_that_a_warning_is_about(self):
+        text = self.succeed("report", "--model", PAPER, "--cutoff", "300", "--trend", "none")
+        stars = re.findall(r"^  (In band, .*?|The .*?) {2,}(\*?) +[\d.]+ ", text[:text.index("WHAT WAS")], re.MULTILINE)
+        self.assertEqual(stars, [("In band, constant delay taken out", "*"), ("In band, with its delay", "*"),
+                                 ("The paper's figure, sqrt(E/T)", ""), ("The same of an ideal sensor, K = S", "")])
+
+    def test_damping_left_open_has_no_uncertainty(self):
+        found = self.json_of("--points", DATA / "tables" / "piezo_00.csv", *QUICK, "--time", "0.001")
+        self.assertIsNone(found["model"]["ubeta"])
+        self.assertEqual(len(found["fit"]["beta_range"]), 2)
+
+    def test_bound_of_a_damping_near_1(self):
+        # Of S = G neither sensor nor filter passes more of a sine than S, so the rms is at most 2 S a.
+        for damping in ["0.99999995", "0.999999999", "0.99999999999"]:
+            found = self.json_of("--model", f"1,4073,{damping}", "--limit", "1", "--trend", "none")["energy"]
+            self.assertLessEqual(found["bound"], 4.0 * found["T"] * (1 + 1e-12))
+            self.assertGreater(found["bound"], found["E"])
+
     def test_delay_none_leads_with_the_delay(self):
         text = self.succeed("report", "--model", PAPER, "--trend", "none", "--reference-delay", "none", "--out", "out")
         self.assertLess(text.index("In band, with its delay"), text.index("In band, constant delay taken out"))
@@ -318,13 +380,22 @@ class FigureValues(ProgramTest):
         # an rms of 1.5^0.5/2 of a, and the worst signal has more.
         self.assertGreater(found["band"]["rms_percent"], 61.2)
         text = self.run_program(*options, "0.02").stdout.decode()
-        self.assertIn("E of the criterion asked for is hidden by rounding: below it is that of the in-band error.", text)
+        self.assertIn("  WARNING: E, trials and trend are those of --criterion band: rounding hides the error asked for\n", text)
+        self.assertNotRegex(text[:text.index("WHAT WAS PUT IN")], r"\*", "the figures of the band are as good as any")
+        self.assertEqual([(w["about"], w["text"]) for w in found["warnings"]],
+                         [("energy", "E, trials and trend are those of --criterion band: rounding hides the error asked for")])
+        self.run_program(*options, "0.02", "--out", "out")
+        page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
+        self.assertRegex(page, r'class="warns"><dt>1 warning</dt><dd><ul><li>.*E, trials and trend are those of')
+        self.assertNotIn("No warnings.", page)
         # Not where T is at fault, too: the words say so.
         self.refuse([*options, "1e-9"], "the time is too short, or")
 
     def test_refusal_of_a_time_too_short(self):
         text = self.succeed("report", "--model", "1,4073,0.3182", "--time", "1e-5", "--trend", "none")
         self.assertIn("T is too short beside the settling time for so small an error to develop; take a longer one.", text)
+        # 4.1833 ms in results.json of the same device at 2 ms; by the envelope of the slowest pole 4.2 ms.
+        self.assertRegex(text, r"take a longer one\.\n  The settling time is 4\.1\d+ ms\.\n")
         self.assertNotIn("order,", text[text.index("THE FIGURES"):text.index("WHAT WAS PUT IN")])
 
     def test_interval_in_the_place_of_u_of_the_energy(self):
@@ -356,6 +427,10 @@ class FigureValues(ProgramTest):
     def test_certify_prints_a_gap_that_is_not_nothing(self):
         text = self.succeed("certify", "--model", "1,25000,0.02", "--criterion", "band", "--effort", "0.5", "--rounds", "5")
         self.assertRegex(text, r"\nGap +< 0\.001 % of the energy reached\n")
+
+    def test_certify_names_the_device_in_all_digits(self):
+        text = self.succeed("certify", "--model", "1,4073,0.99999995", "--rounds", "1")
+        self.assertRegex(text, r"^Device .* beta = 0\.99999995\n")
 
     def test_certify_names_what_its_numbers_are(self):
         quick = ["certify", "--model", "1,4073,0.3182", "--rounds", "1"]
@@ -429,7 +504,7 @@ class FigureWords(ProgramTest):
             self.assertIn(words, in_band)
         # DESIGN: u(E) is about 1.1e-5 over the box, and root 3 times that of normal parameters.
         self.assertRegex(text[text.index("UNCERTAINTY OF E"):text.index("MONTE CARLO OF")],
-                         r"u\(E\) +1\.[89]\de?-?\d*[ e]")
+                         r"u\(E\); U \(k = 2\) +1\.[89]\de?-?\d*;")
         self.assertRegex(text, r"none exceeds\n")
         self.assertIn("THE FIGURES (at the estimates;", text)
         for line in re.findall(r".*proven.*", text):

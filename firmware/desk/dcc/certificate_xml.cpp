@@ -155,8 +155,10 @@ void open_result(XmlWriter& xml, const char* name) {
 void add_figure(XmlWriter& xml, const char* name, const EvaluationResults& results,
                 const app::FigureResults& figure) {
   if (figure.exists()) {
-    add_quantity(xml, name, results.percent_of(figure.energy_v2s),
-                 figure.uncertainty.expanded_percent(), "\\percent");
+    // As in the report, no U that says too little.
+    const double expanded =
+        results.is_one_sided(figure) ? 0.0 : figure.uncertainty.expanded_percent();
+    add_quantity(xml, name, results.percent_of(figure.energy_v2s), expanded, "\\percent");
   }
 }
 
@@ -174,7 +176,11 @@ const char* name_of_energy(Criterion criterion) {
 
 void add_errors(XmlWriter& xml, const EvaluationResults& results) {
   open_result(xml, "Largest errors");
-  add_figure(xml, "Worst rms error in band, constant delay taken out, of sensitivity times limit",
+  const bool is_given = results.settings.delay_choice == app::DelayChoice::kGiven;
+  add_figure(xml,
+             is_given
+                 ? "Worst rms error in band, the given delay taken out, of sensitivity times limit"
+                 : "Worst rms error in band, constant delay taken out, of sensitivity times limit",
              results, results.matched);
   add_figure(xml, "Worst rms error in band, with its delay, of sensitivity times limit", results,
              results.band);

@@ -157,8 +157,10 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
                     const app::FigureResults& figure) {
   std::string name = "Worst in-band error, with its delay";
   if (&figure == &results.matched) {
+    const bool is_given = results.settings.delay_choice == app::DelayChoice::kGiven;
     name =
-        std::string("Worst in-band error, constant delay taken out") +
+        std::string("Worst in-band error, ") +
+        (is_given ? "the given delay taken out" : "constant delay taken out") +
         (results.is_one_sided(figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
   }
   append_figure(html, kind, name, value_of(results, figure.uncertainty, figure.energy_v2s));
@@ -207,6 +209,12 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
   }
 }
 
+// Whether the interval stands in the place of U, as in the report.
+bool states_interval(const EvaluationResults& results) {
+  const double energy = results.energy_v2s();
+  return energy >= 0.0 && results.is_one_sided(results.uncertainty, energy);
+}
+
 // E with its U, where there is one.
 void append_energy(std::string& html, const EvaluationResults& results) {
   const app::EnergyUncertainty& known = results.uncertainty;
@@ -215,8 +223,8 @@ void append_energy(std::string& html, const EvaluationResults& results) {
       std::string(name_of(results.settings.criterion)) + " at the estimates, E";
   const double u = known.exists() && !results.is_damping_open() ? known.u_v2s : 0.0;
   const EnergyFormat format(energy, kCoverageFactor * u);
-  if (!(u > 0.0)) {
-    append_figure(html, "", name, format.number(energy) + format.unit());
+  if (!(u > 0.0) || states_interval(results)) {
+    append_figure(html, "", name, EnergyFormat(energy, 0.0).number(energy) + format.unit());
     return;
   }
   append_figure(html, "", name + ", with U (k = 2)",
@@ -242,9 +250,12 @@ void append_uncertainty(std::string& html, const EvaluationResults& results) {
   const EnergyFormat format(results.energy_v2s(), kCoverageFactor * known.u_v2s);
   const std::string percent =
       words_of([&](TextWriter& out) { out.general(kPercent * results.settings.probability, 6); });
-  append_figure(html, kMore, percent + " % coverage interval of E",
-                format.number(known.symmetric.low) + " to " + format.number(known.symmetric.high) +
-                    format.unit());
+  const CoverageInterval interval = states_interval(results)
+                                        ? app::widened(known.shortest, results.energy_v2s())
+                                        : known.symmetric;
+  append_figure(
+      html, kMore, percent + " % coverage interval of E",
+      format.number(interval.low) + " to " + format.number(interval.high) + format.unit());
 }
 
 void append_papers_maximum(std::string& html, const EvaluationResults& results) {
@@ -311,27 +322,33 @@ std::vector<app::Warning> warnings_of(const EvaluationResults& results,
 
 // How many there are and which, beside the number that they are about.
 void append_warnings(std::string& html, const EvaluationResults& results,
-                     const std::vector<app::Warning>& warnings) {
-  if (warnings.empty()) {
+                     const std::vector<app::Warning>& warnings, const char* other_criterion) {
+  const bool is_other = other_criterion != nullptr;
+  if (warnings.empty() && !is_other) {
     return;
   }
   std::string list = "<ul>";
+  if (is_other) {
+    list += "<li>" + link_to(app::ReportSection::kFigures) + ": " +
+            words_of([&](TextWriter& out) { out.text(other_criterion); }) + "</li>";
+  }
   for (const app::Warning warning : warnings) {
     const std::string words =
         sentence_of(words_of(warning, results), least_time_s(warning, results));
     list += "<li>" + link_to(place_of(warning)) + ": " +
             words_of([&](TextWriter& out) { out.text(words.c_str()); }) + "</li>";
   }
-  const std::string count = std::to_string(warnings.size());
-  append_figure(html, " class=\"warns\"", count + (warnings.size() == 1 ? " warning" : " warnings"),
-                list + "</ul>");
+  const std::size_t count = warnings.size() + (is_other ? 1 : 0);
+  append_figure(html, " class=\"warns\"",
+                std::to_string(count) + (count == 1 ? " warning" : " warnings"), list + "</ul>");
 }
 
 void append_headline(std::string& html, const EvaluationResults& results,
-                     const std::vector<app::Warning>& warnings) {
-  html += std::string("<dl class=\"headline") + (warnings.empty() ? "" : " doubtful") + "\">\n";
+                     const std::vector<app::Warning>& warnings, const char* other_criterion) {
+  const bool is_clear = warnings.empty() && other_criterion == nullptr;
+  html += std::string("<dl class=\"headline") + (is_clear ? "" : " doubtful") + "\">\n";
   append_leading_figure(html, results);
-  append_warnings(html, results, warnings);
+  append_warnings(html, results, warnings, other_criterion);
   append_second_figure(html, results);
   append_papers_figure(html, results);
   append_energy(html, results);
@@ -391,9 +408,9 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
 
   const std::vector<app::Warning> warnings = warnings_of(results, context);
   std::string html = opening(context);
-  append_headline(html, results, warnings);
+  append_headline(html, results, warnings, context.other_criterion);
   append_conditions(html, results, context.in_g);
-  if (warnings.empty()) {
+  if (warnings.empty() && context.other_criterion == nullptr) {
     html += "<p class=\"note\">No warnings.</p>\n";
   }
   body += certificate_of(context);

@@ -215,16 +215,9 @@ Problem both(const Problem& first, const Problem& second) {
   return {status, first.line + (is_single ? "" : "; ") + second.line};
 }
 
-// What the star at the figures means, and whose E it is.
-std::string mark_of(const app::EvaluationResults& evaluation, const app::ReportContext& context,
-                    const Problem& criterion_changed) {
-  std::string mark = mark_of_figures(evaluation, context);
-  if (criterion_changed.line.empty()) {
-    return mark;
-  }
-  return std::string("E of the criterion asked for is hidden by rounding: below it is that of ") +
-         "the in-band error." + (mark.empty() ? "" : "\n  " + mark);
-}
+// The results are then those of the in-band error.
+constexpr const char* kOtherCriterion =
+    "E, trials and trend are those of --criterion band: rounding hides the error asked for";
 
 bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const ReportOptions& options) {
   return !options.points_path.empty() && !(options.damping > 0.0) &&
@@ -297,8 +290,10 @@ Problem run_report(Span<const std::string_view> arguments) {
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};
-  const std::string mark = problem_of_work ? "" : mark_of(evaluation, context, criterion_changed);
-  context.mark = or_null(mark);
+  const FigureMark mark = problem_of_work ? FigureMark{} : mark_of_figures(evaluation, context);
+  context.mark = or_null(mark.words);
+  context.marked = mark.rows;
+  context.other_criterion = criterion_changed.line.empty() ? nullptr : kOtherCriterion;
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {
     return give_sensitivity(results, options.json, files);

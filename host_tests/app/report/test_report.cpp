@@ -193,7 +193,7 @@ TEST(Report, PaperMethod) {
 
 TEST(Report, ShortTimeIsNoted) {
   Settings settings = quick_settings();
-  EXPECT_FALSE(says(report_of(evaluated(kTable2, settings)), "T is shorter"));
+  EXPECT_FALSE(says(report_of(evaluated(kTable2, settings)), "T is shorter than the settling time,"));
   settings.duration_s = 0.001;
   EXPECT_TRUE(says(report_of(evaluated(kTable2, settings)), "T is shorter"));
 }
@@ -342,7 +342,7 @@ TEST(Report, AnIdealSensorHasAnErrorInBandOfAnotherGain) {
   EXPECT_LT(results.percent_of(results.ideal.energy_v2s), 2.0 * settled);
   const std::string report = report_of(results);
   EXPECT_TRUE(says(report, "0 for an ideal sensor\n  with S = G"));
-  EXPECT_TRUE(says(report, "The same of an ideal sensor, K = S"));
+  EXPECT_TRUE(says(report, "The first of an ideal sensor, K = S"));
 }
 
 TEST(Report, ASensorThatIsTheFilterHasNoError) {

@@ -3,6 +3,7 @@
 
 #include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -133,7 +134,7 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
 }
 
 /// @returns Whether one has an interval in the place of U.
-bool write_papers_rows(const EvaluationResults& results, bool is_marked,
+bool write_papers_rows(const EvaluationResults& results, std::uint32_t marked,
                        ReportWriter& out) noexcept {
   const double energy = results.energy_v2s();
   const Criterion criterion = results.settings.criterion;
@@ -151,13 +152,14 @@ bool write_papers_rows(const EvaluationResults& results, bool is_marked,
         has_u ? results.interval_percent_of(known.shortest, energy) : CoverageInterval{};
     is_any_one_sided = results.is_one_sided(known, energy);
     write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
-               is_marked, percent, has_u, expanded, results.has_bound,
+               (marked & kRowEnergy) != 0, percent, has_u, expanded, results.has_bound,
                results.percent_of(results.bound_v2s), is_any_one_sided, interval},
               out);
   }
   if (results.ideal.exists() &&
       (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {
-    write_row({"The same of an ideal sensor, K = S",
+    write_row({criterion == Criterion::kInBandError ? "The first of an ideal sensor, K = S"
+                                                    : "The same of an ideal sensor, K = S",
                false,
                results.percent_of(results.ideal.energy_v2s),
                false,
@@ -171,9 +173,18 @@ bool write_papers_rows(const EvaluationResults& results, bool is_marked,
   return is_any_one_sided;
 }
 
-void write_refusal(const char* name, const FigureResults& figure, ReportWriter& out) noexcept {
+void write_refusal(const char* name, const EvaluationResults& results, const FigureResults& figure,
+                   ReportWriter& out) noexcept {
   out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(":\n  ");
-  out.text(figure.refusal()).line();
+  out.text(figure.refusal());
+  out.text(figure.status == Status::kDelayTooLong ? "\n " : "");
+  write_longest_delay(figure.status, results, out);
+  if (figure.is_short) {
+    out.text("\n  The settling time is ")
+        .general(kMilli * results.band_settling.time_s, 4)
+        .text(" ms.");
+  }
+  out.line();
 }
 
 void write_interval(const char* name, const CoverageInterval& interval, double probability,
@@ -182,6 +193,26 @@ void write_interval(const char* name, const CoverageInterval& interval, double p
   out.label(name).scientific(interval.low, kDigits).text(" to ");
   out.scientific(interval.high, kDigits).text(" V^2 s (");
   out.general(kPercent * probability, 6).text(" %)").line();
+}
+
+/// u, U and both intervals; or without U the interval that stands in its place, as in the figures.
+void write_known(const EvaluationResults& results, const EnergyUncertainty& known,
+                 double energy_v2s, ReportWriter& out) noexcept {
+  const double probability = results.settings.probability;
+  const bool has_expanded = !(energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s));
+  out.label(has_expanded ? "u(E); U (k = 2)" : "u(E)").scientific(known.u_v2s, 2);
+  if (has_expanded) {
+    out.text("; ").scientific(kCoverageFactor * known.u_v2s, 2);
+  }
+  out.text(" V^2 s").line();
+  if (has_expanded) {
+    write_interval("Symmetric interval", known.symmetric, probability, out);
+  }
+  write_interval(has_expanded ? "Shortest interval" : "Interval, in place of U",
+                 has_expanded ? known.shortest : widened(known.shortest, energy_v2s), probability,
+                 out);
+  write_guard(known.guard, out);
+  write_rough_trials(known.rough_trials, known.rough_part, out);
 }
 
 void write_figure(const EvaluationResults& results, const FigureResults& figure,
@@ -194,12 +225,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
   write_upper_bound(figure.has_bound, figure.bound_v2s, out);
   const EnergyUncertainty& known = figure.uncertainty;
   if (known.exists()) {
-    out.label("u(E); U (k = 2)").scientific(known.u_v2s, 2).text("; ");
-    out.scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
-    write_interval("Symmetric interval", known.symmetric, results.settings.probability, out);
-    write_interval("Shortest interval", known.shortest, results.settings.probability, out);
-    write_guard(known.guard, out);
-    write_rough_trials(known.rough_trials, known.rough_part, out);
+    write_known(results, known, figure.energy_v2s, out);
   }
 }
 
@@ -221,6 +247,16 @@ double rounded_down(double value, int decimals) noexcept {
 
 double rounded_up(double value, int decimals) noexcept {
   return 0.0 - rounded_down(-value, decimals);  // Never -0.
+}
+
+void write_longest_delay(Status status, const EvaluationResults& results,
+                         TextWriter& out) noexcept {
+  if (status != Status::kDelayTooLong) {
+    return;
+  }
+  constexpr int kDigits = 4;
+  out.text(" (at most ").general(kMicro / (kTwoPi * results.settings.cutoff_hz), kDigits);
+  out.text(" us)");
 }
 
 void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {
@@ -273,15 +309,18 @@ void write_switching_times(std::size_t switches, Span<const double> times_s,
 }
 
 /// The one that was asked for leads. @returns Whether one has an interval in the place of U.
-bool write_band_rows(const EvaluationResults& results, bool is_marked, ReportWriter& out) noexcept {
+bool write_band_rows(const EvaluationResults& results, std::uint32_t marked,
+                     ReportWriter& out) noexcept {
+  const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
   const bool is_band_first = results.settings.delay_choice == DelayChoice::kNone;
   bool any = false;
   for (const bool is_band : {is_band_first, !is_band_first}) {
     const FigureResults& figure = is_band ? results.band : results.matched;
     if (figure.exists()) {
-      const Row row =
-          row_of(is_band ? "In band, with its delay" : "In band, constant delay taken out",
-                 is_marked, results, figure);
+      const Row row = row_of(is_band    ? "In band, with its delay"
+                             : is_given ? "In band, given delay taken out"
+                                        : "In band, constant delay taken out",
+                             (marked & (is_band ? kRowBand : kRowMatched)) != 0, results, figure);
       write_row(row, out);
       any = any || row.is_one_sided;
     }
@@ -291,7 +330,8 @@ bool write_band_rows(const EvaluationResults& results, bool is_marked, ReportWri
 
 void write_figures(const EvaluationResults& results, const ReportContext& context,
                    ReportWriter& out) noexcept {
-  const bool marks = context.mark != nullptr;
+  const std::uint32_t marks = context.mark != nullptr ? context.marked : 0U;
+  const bool is_given = results.settings.delay_choice == DelayChoice::kGiven;
   out.heading(ReportSection::kFigures,
               "THE FIGURES (at the estimates; worst rms error of signals within +-a, in % of S a)");
   out.part(ReportPart::kTable);
@@ -303,14 +343,16 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
   const bool is_band_one_sided = write_band_rows(results, marks, out);
   const bool is_one_sided = write_papers_rows(results, marks, out) || is_band_one_sided;
   if (!results.band.exists()) {
-    write_refusal("in band", results.band, out);
+    write_refusal("in band", results, results.band, out);
   } else if (!results.matched.exists()) {
-    write_refusal("in band with the delay taken out", results.matched, out);
+    write_refusal("in band with the delay taken out", results, results.matched, out);
   }
   out.part(ReportPart::kText)
       .text(
           "  In band: what the sensor does wrong within the filter's band; 0 for an ideal sensor\n"
-          "  with S = G, the filter's gain.\n");
+          "  with S = G, the filter's gain")
+      .text(is_given ? ", but not with a delay given" : "")
+      .text(".\n  None exceeds: proven at the estimates.\n");
   if (is_one_sided) {
     out.text("  x to y: where the figure is with ");
     out.general(kPercent * results.settings.probability, 6);
@@ -325,8 +367,11 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
     out.text(
         "  The energy difference is no error, but the sensor's energy less that of the filter.\n");
   }
-  if (marks) {
-    out.text("  * ").text(context.mark).line();
+  if (context.other_criterion != nullptr) {
+    out.part(ReportPart::kWarning).text("  WARNING: ").text(context.other_criterion).line();
+  }
+  if (context.mark != nullptr) {
+    out.part(ReportPart::kText).text("  * ").text(context.mark).line();
   }
 }
 
@@ -375,9 +420,8 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
               "IN-BAND ERROR (at the estimates; energy of the filter on sensor minus G x)");
   write_figure(results, results.band, out);
   if (results.settings.criterion != Criterion::kInBandError) {
-    // A T that is somewhat shorter is what the paper has, too.
     const SettlingTime& settling = results.band_settling;
-    if (results.settings.duration_s < kMuchShorter * settling.time_s) {
+    if (results.settings.duration_s < settling.time_s) {
       write_settling_time("5 % settling, in band", settling, out);
       write_short_time("the settling time in band", settling, results, out);
     }
@@ -412,7 +456,6 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
 
 void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noexcept {
   const EnergyUncertainty& known = results.uncertainty;
-  const double probability = results.settings.probability;
   out.heading(ReportSection::kUncertainty,
               results.source == Source::kPoints
                   ? "UNCERTAINTY OF E (JCGM 101: S, f0 and beta jointly normal, as fitted)"
@@ -438,12 +481,7 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
   }
   out.label("Mean of E").scientific(known.mean_v2s, 8).text(" V^2 s over ");
   out.integer(known.trials).text(" trials").line();
-  out.label("u(E)").scientific(known.u_v2s, 2).text(" V^2 s").line();
-  out.label("U (k = 2)").scientific(kCoverageFactor * known.u_v2s, 2).text(" V^2 s").line();
-  write_interval("Symmetric interval", known.symmetric, probability, out);
-  write_interval("Shortest interval", known.shortest, probability, out);
-  write_guard(known.guard, out);
-  write_rough_trials(known.rough_trials, known.rough_part, out);
+  write_known(results, known, results.energy_v2s(), out);
   constexpr std::uint32_t kOnePercent = 100;
   if (known.redraws > 0) {
     out.label("Drawn again").integer(known.redraws).text(" draws that were no device").line();

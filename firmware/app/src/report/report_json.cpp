@@ -22,6 +22,14 @@ const char* source_of(const EvaluationResults& results, const Measurement* measu
   return results.source == Source::kPoints ? "points" : "model";
 }
 
+void write_number_or_null(const char* name, bool exists, double value, JsonWriter& json) noexcept {
+  if (exists) {
+    json.number(name, value);
+  } else {
+    json.null(name);
+  }
+}
+
 void write_model(const EvaluationResults& results, const ReportContext& context,
                  JsonWriter& json) noexcept {
   const Device& device = results.device;
@@ -32,7 +40,7 @@ void write_model(const EvaluationResults& results, const ReportContext& context,
   json.number("beta", device.estimate.damping);
   json.number("uS", device.u.sensitivity);
   json.number("uf0", device.u.natural_frequency_hz);
-  json.number("ubeta", device.u.damping);
+  write_number_or_null("ubeta", !results.is_damping_open(), device.u.damping, json);
   json.open("covariance", '[');
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
     json.open_row(nullptr);
@@ -95,14 +103,6 @@ void write_simulated(const SimulatedBench* simulated, JsonWriter& json) noexcept
   json.number("f0", simulated->truth.natural_frequency_hz);
   json.number("beta", simulated->truth.damping);
   json.close();
-}
-
-void write_number_or_null(const char* name, bool exists, double value, JsonWriter& json) noexcept {
-  if (exists) {
-    json.number(name, value);
-  } else {
-    json.null(name);
-  }
 }
 
 /// A number of a struct, as a row of a table: less code than a call for each.
@@ -314,11 +314,24 @@ void write_disagreements(const GuardResults& guard, JsonWriter& json) noexcept {
   }
 }
 
-void write_figure_uncertainty(const EvaluationResults& results, const EnergyUncertainty& known,
+/// What the report states in the place of +-U; null where U is the one to use.
+void write_instead_of_u(const EvaluationResults& results, const EnergyUncertainty& known,
+                        double energy_v2s, JsonWriter& json) noexcept {
+  if (energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s)) {
+    const CoverageInterval interval = results.interval_percent_of(known.shortest, energy_v2s);
+    json.pair("instead_of_U_percent", interval.low, interval.high);
+  } else {
+    json.null("instead_of_U_percent");
+  }
+}
+
+void write_figure_uncertainty(const EvaluationResults& results, const FigureResults& figure,
                               JsonWriter& json) noexcept {
+  const EnergyUncertainty& known = figure.uncertainty;
   if (!known.exists()) {
-    for (const char* name : {"u", "U", "interval", "shortest", "u_percent", "U_percent",
-                             "interval_percent", "shortest_percent", "disagreements"}) {
+    for (const char* name :
+         {"u", "U", "interval", "shortest", "u_percent", "U_percent", "interval_percent",
+          "shortest_percent", "instead_of_U_percent", "disagreements"}) {
       json.null(name);
     }
     return;
@@ -331,6 +344,7 @@ void write_figure_uncertainty(const EvaluationResults& results, const EnergyUnce
   json.number("U_percent", kCoverageFactor * known.u_percent);
   write_interval_in_percent("interval_percent", results, known.symmetric, json);
   write_interval_in_percent("shortest_percent", results, known.shortest, json);
+  write_instead_of_u(results, known, figure.energy_v2s, json);
   write_disagreements(known.guard, json);
 }
 
@@ -348,7 +362,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
     json.number(nullptr, time_s);
   }
   json.close_row();
-  write_figure_uncertainty(results, figure.uncertainty, json);
+  write_figure_uncertainty(results, figure, json);
 }
 
 void write_band(const EvaluationResults& results, JsonWriter& json) noexcept {
@@ -409,6 +423,7 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   const bool has_root = results.energy_v2s() >= 0.0 && is_finite(known.u_percent);
   write_number_or_null("u_percent", has_root, known.u_percent, json);
   write_number_or_null("U_percent", has_root, kCoverageFactor * known.u_percent, json);
+  write_instead_of_u(results, known, results.energy_v2s(), json);
   write_disagreements(known.guard, json);
   json.close();
 }
@@ -435,6 +450,9 @@ void write_if_due(Warning warning, const EvaluationResults& results, const Repor
 void write_warnings(const EvaluationResults& results, const ReportContext& context,
                     JsonWriter& json) noexcept {
   json.open("warnings", '[');
+  if (context.other_criterion != nullptr) {
+    write_warning("energy", context.other_criterion, 0.0, json);
+  }
   for (const Warning warning : kWarnings) {
     write_if_due(warning, results, context, json);
   }

@@ -35,6 +35,11 @@ struct Labels {
 
 inline constexpr std::uint32_t kLabelShown = 240;
 
+/// The rows of the figures that a warning may concern.
+inline constexpr std::uint32_t kRowBand = 1;
+inline constexpr std::uint32_t kRowMatched = 2;
+inline constexpr std::uint32_t kRowEnergy = 4;
+
 /// Refers to what it describes; made for one call. `{}` is an evaluation of known parameters.
 struct ReportContext {
   const char* source_name = nullptr;         ///< Of the file with the points; null if none.
@@ -44,6 +49,9 @@ struct ReportContext {
   const char* cause = nullptr;    ///< Why the points do not fit a device; null if nobody knows.
   const char* read_as = nullptr;  ///< What was understood of a table of points; null for nothing.
   const char* mark = nullptr;     ///< What the star at the figures means; null for no star.
+  std::uint32_t marked = 0;       ///< The rows with a star: a sum of `kRow...`.
+  /// A warning that the results are those of another criterion than was asked for; null if not.
+  const char* other_criterion = nullptr;
 };
 
 /// m/s^2, exactly (ISO 80000-3).
