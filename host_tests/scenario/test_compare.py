@@ -317,8 +317,9 @@ class CompareInBand(Comparing, ProgramTest):
             self.assertEqual([d["damping_open"] for d in found["devices"]], [True, False, False])
             text = self.succeed("compare", "0.json", "1.json", "2.json", "--by", by)
             self.assertIn("WARNING: Told apart from no other, because the points leave the damping open: open.", text)
-            self.assertRegex(text, r"open and good: CANNOT BE TOLD APART: the points of open leave its\s+damping open, "
-                                   r"E from\s+1.000e-03 to\s+9.000e-03 V\^2 s")
+            whose = "and no range of the figure that ranks is known; " if by == "matched" else ""
+            self.assertIn("open and good: CANNOT BE TOLD APART: the points of open leave its damping open, "
+                          f"{whose}E from 1.000e-03 to 9.000e-03 V^2 s", " ".join(text.split()))
             self.assertRegex(text, r"\n  1-3   open    beta +\S")
         self.assertIn("1.000e-03 to 9.000e-03", text)
 
@@ -366,7 +367,39 @@ class CompareInBand(Comparing, ProgramTest):
     def test_no_uncertainty_in_band(self):
         found = self.compare(result(matched=1.0, u_band=None), result(matched=2.0), by="matched")
         self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2)])
-        self.assertIn("CANNOT BE RANKED", self.succeed("compare", "0.json", "1.json"))
+        text = self.succeed("compare", "0.json", "1.json")
+        self.assertIn("CANNOT BE RANKED", text)
+        self.assertIn("Without both: its report has no", text)
+        # The legend explains what there is.
+        self.compare(result(matched=1.0, u_band=None), result(matched=2.0, u_band=None), by="matched")
+        text = self.succeed("compare", "0.json", "1.json")
+        self.assertRegex(text, r"U\(matched\), interval: none, as no report has an uncertainty")
+        self.assertNotIn("expanded uncertainty (k = 2)", text)
+
+    def test_ranks_are_explained_where_they_are_shared(self):
+        self.compare(result(matched=1.0), result(matched=2.0), by="matched")
+        self.assertNotIn("  rank: ", self.succeed("compare", "0.json", "1.json"))
+        self.compare(result(matched=1.0), result(matched=1.0), by="matched")
+        self.assertIn("  rank: 1-2 is first or second", self.succeed("compare", "0.json", "1.json"))
+
+    def test_rounding_is_no_figure(self):
+        noise = 7.7e-13
+        self.compare(result(matched=1.2, u_band=noise), result(matched=1.2 + 2 * noise, u_band=noise), by="matched")
+        text = self.succeed("compare", "0.json", "1.json", "--out", "cmp")
+        self.assertIn("the difference is 0 but for rounding", text)
+        self.assertRegex(text, r"0\.json +1\.200 +5\.000 +\S+ +0 +1\.200 to 1\.200 +-\n")
+        page = (self.directory / "cmp" / "comparison.html").read_text(encoding="utf-8")
+        for words in [text, page]:
+            self.assertNotRegex(words, r"0\.0000000|e-1[0-9]|<sup>−1[0-9]")
+
+    def test_a_delay_given_is_an_error_of_an_ideal_sensor(self):
+        both = [result(matched=1.0), result(matched=2.0)]
+        for each in both:
+            each["band"]["matched"]["delay_mode"] = "given"
+        self.compare(*both, by="matched")
+        text = " ".join(self.succeed("compare", "0.json", "1.json").split())
+        self.assertRegex(text, r"a delay of 25 us taken out, in percent of S a\. in band %: the same with the sensor's delay\. "
+                               r"An ideal sensor has 0 there\.")
 
 
 def one_sided(percent, high, low=0.0) -> dict:

@@ -483,7 +483,7 @@ void write_box(const BoxProof& box, app::TextWriter& out) {
 void write_best_corner(const BoxProof& box, app::TextWriter& out) {
   const Accelerometer& device = box.device();
   out.text("            at S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
-  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
+  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").exact(device.damping);
   out.line();
 }
 
@@ -505,7 +505,7 @@ void write_text(const CertifyResult& result, app::TextWriter& out) {
   const std::size_t switches = proven.signal->count();
   const double duration_s = proven.signal->duration_s();
   out.text("Device      S = ").general(device.sensitivity, 7).text(" V/(m/s^2), f0 = ");
-  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").general(device.damping, 7);
+  out.general(device.natural_frequency_hz, 7).text(" Hz, beta = ").exact(device.damping);
   out.line();
   write_warnings(result, out);
   if (proven.box != nullptr) {

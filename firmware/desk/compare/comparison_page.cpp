@@ -61,7 +61,7 @@ std::string figure_with_uncertainty(const Comparison& comparison, const Result& 
   if (figure.is_one_sided) {
     text += " (" + interval_text(figure, by) + ")";
   } else if (figure.has_uncertainty) {
-    text += " +- " + number_text(figure.expanded, figure.expanded, by);
+    text += " +- " + expanded_text(figure, by);
   }
   return html_of_numbers(text) + html_of(figure_words(by).unit);
 }

@@ -293,7 +293,7 @@ std::string reason_not_compared(const Result& first, const Result& second) {
   return reason;
 }
 
-std::string open_damping_of(const Result& first, const Result& second) {
+std::string open_damping_of(const Result& first, const Result& second, FigureKind by) {
   std::string words;
   for (const Result* result : {&first, &second}) {
     if (!result->has_open_damping) {
@@ -303,7 +303,11 @@ std::string open_damping_of(const Result& first, const Result& second) {
     words += (words.empty() ? "the points of " : "; those of ") + short_name_of(*result) +
              " leave its damping open";
     if (energy.has_range) {
-      words += ", E from " + interval_text(energy, FigureKind::kEnergy) + " V^2 s";
+      // A report has no range of the others.
+      words += by == FigureKind::kEnergy
+                   ? ", E from "
+                   : ", and no range of the figure that ranks is known; E from ";
+      words += interval_text(energy, FigureKind::kEnergy) + " V^2 s";
     }
   }
   return words;
@@ -325,6 +329,9 @@ std::string difference_of(const Comparison& comparison, const Result& first, con
   const FigureKind by = comparison.by;
   const char* unit = figure_words(by).unit;
   const double value = comparison.figure(first).value;
+  if (is_rounding(pair.difference, value) && is_rounding(pair.expanded, value)) {
+    return "the difference is 0 but for rounding";
+  }
   return text_by([&](TextWriter& out) {
     out.text("the difference is ").text(number_text(pair.difference, pair.expanded, by).c_str());
     out.text(unit);
@@ -396,8 +403,7 @@ std::vector<std::string> row_of(const Comparison& comparison, std::size_t index,
   if (comparison.by == FigureKind::kEnergy) {
     row.push_back(value_text(ranked, comparison.by));
   }
-  const bool has_u = ranked.has_uncertainty && !ranked.is_one_sided;
-  row.push_back(has_u ? number_text(ranked.expanded, ranked.expanded, comparison.by) : "-");
+  row.push_back(expanded_text(ranked, comparison.by));
   row.push_back(interval_text(ranked, comparison.by));
   row.push_back(bound_text(ranked, comparison.by));
   return row;
@@ -421,6 +427,33 @@ std::string words_on_one_side(const Comparison& comparison) {
 
 bool has_marks(const Comparison& comparison) {
   return std::any_of(comparison.results.begin(), comparison.results.end(), is_marked);
+}
+
+bool shares_ranks(const Comparison& comparison) {
+  return std::any_of(comparison.ranks.begin(), comparison.ranks.end(),
+                     [](const Rank& rank) { return rank.best != rank.worst; });
+}
+
+std::string if_gain_of(const Result& result) {
+  return result.gain_mode == "fixed" ? " if its S is the filter's gain" : "";
+}
+
+// Of U, interval and bound: of those that there are.
+Fact legend_of_uncertainty(const Comparison& comparison) {
+  const std::size_t count = comparison.results.size();
+  const std::size_t without = those_that(comparison, [&](const Result& result) {
+                                return !comparison.figure(result).has_uncertainty;
+                              }).size();
+  const std::string bound = "At the estimates no signal has more than the bound.";
+  if (without == count) {
+    return {heading_of_expanded(comparison.by) + ", interval",
+            "none, as no report has an uncertainty of the figure that ranks. " + bound};
+  }
+  return {heading_of_expanded(comparison.by),
+          std::string("expanded uncertainty (k = 2) of the figure that ranks, from those of S, ") +
+              "f0 and beta; interval and bound are of that figure, too. " + bound +
+              words_on_one_side(comparison) +
+              (without > 0 ? " Without both: its report has no uncertainty of that figure." : "")};
 }
 
 }  // namespace
@@ -498,13 +531,19 @@ ComparisonTable table_of(const Comparison& comparison) {
 
 std::vector<Fact> legend_of(const Comparison& comparison) {
   const Result& first = comparison.results.front();
-  std::vector<Fact> legend = {
-      {"rank", "1-2 is first or second: the uncertainties do not say which."},
-      {figure_words(FigureKind::kMatched).heading,
-       "the largest rms error within the filter's band, " + delay_of(comparison) +
-           " taken out, in percent of S a. An ideal sensor has 0" +
-           (first.gain_mode == "fixed" ? " if its S is the filter's gain." : ".")},
-      {figure_words(FigureKind::kBand).heading, "the same with the sensor's delay."}};
+  const bool is_given = first.delay.mode == "given";
+  std::vector<Fact> legend;
+  if (shares_ranks(comparison)) {
+    legend.push_back({"rank", "1-2 is first or second: the uncertainties do not say which."});
+  }
+  legend.push_back({figure_words(FigureKind::kMatched).heading,
+                    "the largest rms error within the filter's band, " + delay_of(comparison) +
+                        " taken out, in percent of S a." +
+                        (is_given ? "" : " An ideal sensor has 0" + if_gain_of(first) + ".")});
+  legend.push_back(
+      {figure_words(FigureKind::kBand).heading,
+       "the same with the sensor's delay." +
+           (is_given ? " An ideal sensor has 0 there" + if_gain_of(first) + "." : std::string())});
   if (first.criterion == "difference") {
     legend.push_back({heading_of_rms(first),
                       "root of the largest energy difference over T, in "
@@ -516,12 +555,7 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
                       "what it keeps out" +
                           ideal_of(comparison) + "."});
   }
-  legend.push_back(
-      {heading_of_expanded(comparison.by),
-       std::string("expanded uncertainty (k = 2) of the figure that ranks, from those of S, f0 ") +
-           "and beta; interval and bound are of that figure, too. At the estimates no signal has "
-           "more than the bound." +
-           words_on_one_side(comparison)});
+  legend.push_back(legend_of_uncertainty(comparison));
   if (has_marks(comparison)) {
     legend.push_back({"mark",
                       "fit: chi-square of the fit warns; beta: its points leave the damping open, "
@@ -549,7 +583,7 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
     return {"CANNOT BE TOLD APART", reason_not_compared(first, second)};
   }
   if (pair.has_open_damping) {
-    return {"CANNOT BE TOLD APART", open_damping_of(first, second)};
+    return {"CANNOT BE TOLD APART", open_damping_of(first, second, comparison.by)};
   }
   if (!pair.has_uncertainty) {
     const bool has_one =

@@ -49,6 +49,11 @@ const FigureWords& figure_words(FigureKind kind) noexcept {
   return kWords[static_cast<std::size_t>(kind)];
 }
 
+bool is_rounding(double size, double figure) noexcept {
+  constexpr double kRounding = 1e-9;  // A figure with more of it is refused.
+  return std::abs(size) <= kRounding * std::abs(figure);
+}
+
 std::string number_text(double value, double expanded, FigureKind kind) {
   constexpr int kLeast = 2;
   int digits = kDigitsAlone;
@@ -65,8 +70,20 @@ std::string bound_text(const Figure& figure, FigureKind kind) {
   return in_digits(rounded_up(figure.bound, kDigitsAlone - 1), kDigitsAlone, kind);
 }
 
+double shown_expanded(const Figure& figure) noexcept {
+  return is_rounding(figure.expanded, figure.value) ? 0.0 : figure.expanded;
+}
+
+std::string expanded_text(const Figure& figure, FigureKind kind) {
+  const double expanded = shown_expanded(figure);
+  if (!figure.has_uncertainty || figure.is_one_sided) {
+    return kNone;
+  }
+  return expanded > 0.0 ? number_text(expanded, expanded, kind) : "0";
+}
+
 std::string value_text(const Figure& figure, FigureKind kind) {
-  const double expanded = figure.is_one_sided ? 0.0 : figure.expanded;
+  const double expanded = figure.is_one_sided ? 0.0 : shown_expanded(figure);
   return figure.exists ? number_text(figure.value, expanded, kind) : kNone;
 }
 
@@ -102,8 +119,9 @@ std::string interval_text(const Figure& figure, FigureKind kind) {
   if (figure.is_one_sided) {
     return range_text(figure.low, figure.high);
   }
-  return number_text(figure.low, figure.expanded, kind) + " to " +
-         number_text(figure.high, figure.expanded, kind);
+  const double expanded = shown_expanded(figure);
+  return number_text(figure.low, expanded, kind) + " to " +
+         number_text(figure.high, expanded, kind);
 }
 
 std::string paper_text(const Result& result) {

@@ -24,6 +24,14 @@ std::string number_text(double value, double expanded, FigureKind kind);
 /// @returns The value in four digits or more, none of which hides that it is a bound.
 std::string bound_text(const Figure& figure, FigureKind kind);
 
+/// @returns Whether a difference or an uncertainty is no more than the rounding of a figure.
+bool is_rounding(double size, double figure) noexcept;
+
+/// @returns U; 0 where it is but the rounding of the figure.
+double shown_expanded(const Figure& figure) noexcept;
+/// The same as text, "-" for none.
+std::string expanded_text(const Figure& figure, FigureKind kind);
+
 /// @returns `number_text()` of the value, "-" if there is none.
 std::string value_text(const Figure& figure, FigureKind kind);
 
