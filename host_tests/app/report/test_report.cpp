@@ -193,7 +193,8 @@ TEST(Report, PaperMethod) {
 
 TEST(Report, ShortTimeIsNoted) {
   Settings settings = quick_settings();
-  EXPECT_FALSE(says(report_of(evaluated(kTable2, settings)), "T is shorter than the settling time,"));
+  EXPECT_FALSE(
+      says(report_of(evaluated(kTable2, settings)), "T is shorter than the settling time,"));
   settings.duration_s = 0.001;
   EXPECT_TRUE(says(report_of(evaluated(kTable2, settings)), "T is shorter"));
 }
