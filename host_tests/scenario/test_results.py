@@ -317,7 +317,6 @@ class FigureValues(ProgramTest):
 
     def test_delay_that_is_too_long_in_numbers(self):
         most = f"(at most {1e6 / (2 * math.pi * 1000):.1f} us)"
-        self.assertIn(most, self.succeed("report", "--model", "1,400,0.7", "--trend", "none"))
         self.refuse(["report", "--model", PAPER, "--criterion", "band", "--reference-delay", "1e-3"], most)
 
     def test_ideal_sensor_with_a_delay_given(self):
@@ -345,13 +344,6 @@ class FigureValues(ProgramTest):
         found = self.json_of("--points", DATA / "tables" / "piezo_00.csv", *QUICK, "--time", "0.001")
         self.assertIsNone(found["model"]["ubeta"])
         self.assertEqual(len(found["fit"]["beta_range"]), 2)
-
-    def test_bound_of_a_damping_near_1(self):
-        # Of S = G neither sensor nor filter passes more of a sine than S, so the rms is at most 2 S a.
-        for damping in ["0.99999995", "0.999999999", "0.99999999999"]:
-            found = self.json_of("--model", f"1,4073,{damping}", "--limit", "1", "--trend", "none")["energy"]
-            self.assertLessEqual(found["bound"], 4.0 * found["T"] * (1 + 1e-12))
-            self.assertGreater(found["bound"], found["E"])
 
     def test_delay_none_leads_with_the_delay(self):
         text = self.succeed("report", "--model", PAPER, "--trend", "none", "--reference-delay", "none", "--out", "out")

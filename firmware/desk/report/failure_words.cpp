@@ -7,6 +7,7 @@
 #include "emax/app/base/text_writer.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_warnings.hpp"
+#include "emax/base/units.hpp"
 #include "emax/identify/fit_judgement.hpp"
 
 #include "desk/cli/console.hpp"
@@ -62,6 +63,10 @@ Problem describe_failure(const app::EvaluationResults& evaluation, const ReportO
   StringSink sentence;
   app::TextWriter writer(sentence);
   write_failure(evaluation, writer);
+  if (failure.status == Status::kDelayTooLong) {
+    const double longest_s = 1.0 / (kTwoPi * evaluation.settings.cutoff_hz);
+    writer.text(" (at most ").general(1e6 * longest_s, 4).text(" us)");
+  }
   const std::string who = culprit(evaluation, options);
   std::string line =
       who + ": " + (is_inverted ? "inverted polarity: " : "") + in_line(sentence.text());

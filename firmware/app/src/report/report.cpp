@@ -712,7 +712,6 @@ void write_failure(const EvaluationResults& results, TextWriter& out) noexcept {
     return;
   }
   out.text(failure.reason);
-  write_longest_delay(failure.status, results, out);
   if (failure.duration_s > 0.0) {
     out.text(" (T = ").general(failure.duration_s, 10).text(" s");
     if (failure.status == Status::kTooManyCells) {

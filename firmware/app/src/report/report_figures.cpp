@@ -3,7 +3,6 @@
 
 #include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
-#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -177,8 +176,6 @@ void write_refusal(const char* name, const EvaluationResults& results, const Fig
                    ReportWriter& out) noexcept {
   out.part(ReportPart::kNote).text("  Note: no error ").text(name).text(":\n  ");
   out.text(figure.refusal());
-  out.text(figure.status == Status::kDelayTooLong ? "\n " : "");
-  write_longest_delay(figure.status, results, out);
   if (figure.is_short) {
     out.text("\n  The settling time is ")
         .general(kMilli * results.band_settling.time_s, 4)
@@ -247,16 +244,6 @@ double rounded_down(double value, int decimals) noexcept {
 
 double rounded_up(double value, int decimals) noexcept {
   return 0.0 - rounded_down(-value, decimals);  // Never -0.
-}
-
-void write_longest_delay(Status status, const EvaluationResults& results,
-                         TextWriter& out) noexcept {
-  if (status != Status::kDelayTooLong) {
-    return;
-  }
-  constexpr int kDigits = 4;
-  out.text(" (at most ").general(kMicro / (kTwoPi * results.settings.cutoff_hz), kDigits);
-  out.text(" us)");
 }
 
 void write_guard(const GuardResults& guard, ReportWriter& out) noexcept {

@@ -22,9 +22,6 @@ double rounded_down(double value, int decimals) noexcept;
 void write_figures(const EvaluationResults& results, const ReportContext& context,
                    ReportWriter& out) noexcept;
 
-/// For kDelayTooLong the longest delay that can be; else nothing.
-void write_longest_delay(Status status, const EvaluationResults& results, TextWriter& out) noexcept;
-
 /// "5 % settling time", and what a T shorter than that is worth.
 ///
 /// @param[in] name What the settling time is called in the middle of a sentence.
