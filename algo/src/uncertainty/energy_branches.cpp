@@ -219,20 +219,42 @@ void EnergyBranches::prepare_piece(const EnergyBranches& whole, const DeviceDraw
   }
 }
 
-/// Takes what the whole's signals become in the middle of the piece.
+/// Takes what the whole's signals become in the middle of the piece and at the four corners where S
+/// is small: a signal that has ended in the middle may be the best at one of them.
 void EnergyBranches::step_seeds(const EnergyBranches& whole, const DeviceDraws& draws,
                                 GridWorkspace& workspace) noexcept {
+  if (branch_ < pool_.count()) {  // As the signals of places before.
+    if (refine_at(draws, place_at(point_), workspace)) {
+      pool_.know(branch_, point_, refiner_.result().energy);
+      branch_ += branch_ + 1 < pool_.count() ? 1 : kBranches - branch_;
+    }
+    return;
+  }
+  branch_ = std::max(branch_, kBranches);  // From here on the seeds are counted.
+  const std::size_t seed = branch_ - kBranches;
   if (!is_refining_) {
-    whole.pool_.load(branch_, search_.duration_s, workspace.refinement(), workspace.signal());
-    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(branch_))),
-               draws.device_at(place_at(0)), workspace);
+    whole.pool_.load(seed, search_.duration_s, workspace.refinement(), workspace.signal());
+    begin_legs(draws.device_at(whole.place_at(whole.pool_.home(seed))),
+               draws.device_at(place_at(point_)), workspace);
   }
   if (!step_refinement(workspace)) {
     return;
   }
-  pool_.offer(0, workspace.signal(), refiner_.result().energy);
-  if (++branch_ == whole.pool_.count()) {
-    branch_ = 0;
+  pool_.offer(point_, workspace.signal(), refiner_.result().energy);
+  if (seed + 1 < whole.pool_.count()) {
+    ++branch_;
+    return;
+  }
+  next_place_of_seeds();
+}
+
+void EnergyBranches::next_place_of_seeds() noexcept {
+  branch_ = 0;
+  do {
+    ++point_;
+  } while (point_ < kPlaces && (!is_corner(point_ - 1) || ((point_ - 1) & 1U) != 0));
+  if (point_ == kPlaces) {
+    point_ = 0;
     phase_ = Phase::kMissing;
   }
 }

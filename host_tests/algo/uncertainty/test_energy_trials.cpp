@@ -208,6 +208,31 @@ TEST(EnergyTrials, WhereAPolynomialFailsTheTrialIsARefinement) {
   }
 }
 
+/// Refinements times switches that a piece takes: 3 nodes along S, which is drawn uniformly, and 5
+/// along f0 and damping.
+double work_of(const EnergyBranches& piece) {
+  return 3.0 * 5.0 * 5.0 * static_cast<double>(piece.notes().branches) *
+         static_cast<double>(piece.most_switches() + 1);
+}
+
+/// Whether pieces were cut as long as that is worth it: until those made so far have taken
+/// `most_work`.
+///
+/// @param[in] least_share Of the draws, in a piece that is cut; 0 where that is not looked at.
+void expect_cuts_within(double most_work, double least_share, Span<const TrialPiece> pieces) {
+  double work = 0.0;
+  std::size_t cuts = 0;
+  for (const TrialPiece& piece : pieces.first(trials.pieces_in_use())) {
+    work += work_of(piece.branches);
+    const bool is_large = piece.half[1] * piece.half[2] > least_share;
+    const bool is_worth_it = !piece.branches.is_accurate() && is_large && work <= most_work;
+    EXPECT_EQ(piece.child != 0, is_worth_it) << work << " of " << most_work;
+    cuts += piece.child != 0 ? 1 : 0;
+  }
+  EXPECT_EQ(trials.pieces_in_use(), EnergyTrials::kFirstPieces + 2 * cuts);
+  EXPECT_LE(trials.pieces_in_use() + 2, pieces.size());  // So none was left whole for want of room.
+}
+
 // Lightly damped: signals end and others begin within the ranges, so that no polynomial of degree 6
 // holds all over them.
 constexpr Sensor kHardSensors[] = {
@@ -243,6 +268,10 @@ TEST(EnergyTrials, InPiecesOfTheRangesFindWhatAFullSearchOfThatDeviceFinds) {
       settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
       ASSERT_EQ(start(settings, model), Status::kOk);
       EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
+      if (distribution == Distribution::kBox) {
+        // Nobody said how many trials there will be: half a second of a PC.
+        expect_cuts_within(2.5e5, 1.0 / 256.0, {pieces.data(), pieces.size()});
+      }
       // With 80 switches the cuts end before the polynomials are as good as that: it is said.
       EXPECT_LE(trials.tolerance(), sensor.device.damping == 0.01 ? 1e-3 : 1e-7);
       EXPECT_LE(trials.notes().rough_part, sensor.device.damping == 0.01 ? 0.011F : 1e-3F);
@@ -287,9 +316,14 @@ TEST(EnergyTrials, AreWorthTheMorePiecesTheMoreThereAre) {
   ASSERT_EQ(start(settings, model), Status::kOk);
   EXPECT_EQ(trials.notes().pieces, 0);
   EXPECT_EQ(refined(), kLooked);
+  const double work_of_trial = static_cast<double>(trials.work()) / 32.0;  // 32 for a switch.
 
   settings.expected_trials = 12000;
   ASSERT_EQ(start(settings, model), Status::kOk);
+  // As all trials would be refined, pieces save that.
+  const double saved = 12000.0 * work_of_trial;
+  ASSERT_GT(0.25 * saved, 2.5e5);  // More than the half second that is worth it anyway.
+  expect_cuts_within(0.25 * saved, 0.0, {pieces.data(), pieces.size()});
   EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
   EXPECT_LT(refined(), kLooked / 4);
   for (std::uint32_t t = 0; t < 4; ++t) {
@@ -403,6 +437,25 @@ TEST(NormalTrials, AreWhatRefinementToTheEndFinds) {
       const double expected = refine(moved, signal, workspace.refinement()).energy;
       ASSERT_NEAR(trials.energy(t, workspace), expected, 1e-9 * expected) << t;
     }
+  }
+}
+
+// Wide ranges, cut into pieces: below the estimate's damping another signal is the best, which in
+// the middle of some pieces has ended.
+TEST(NormalTrials, InPiecesKnowTheSignalsAtTheirCornersToo) {
+  std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
+  TrialSettings settings = settings_for(Method::kBest, 2e-3);
+  settings.distribution = Distribution::kNormal;
+  settings.covariance[0][0] = 0.003 * 0.003;
+  settings.covariance[1][1] = 80.0 * 80.0;
+  settings.covariance[2][2] = 0.016 * 0.016;
+  settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+  ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+  EXPECT_GT(trials.notes().pieces, EnergyTrials::kFirstPieces);
+  for (std::uint32_t t = 0; t < 200; ++t) {
+    const double expected = full_search(paper_model(), trials.device(t), settings);
+    // What the comparison with a search in every trial asks for; a trial may find more.
+    EXPECT_GE(trials.energy(t, workspace), (1.0 - 1e-6) * expected) << t;
   }
 }
 

@@ -80,7 +80,8 @@ class EnergyBranches {
   bool is_ready() const noexcept { return phase_ == Phase::kReady; }
 
   /// Starts over with a part of the ranges: the signals are those of the whole, refined in the
-  /// middle of the part, where each that stays another one begins a branch of its own. No searches.
+  /// middle and at corners of the part; each that is another one there begins a branch of its own.
+  /// No searches.
   ///
   /// Polynomials of degree 4 only: where they fail, smaller pieces do better.
   ///
@@ -184,6 +185,7 @@ class EnergyBranches {
   void step_search(EnergySearch& search, GridWorkspace& workspace) noexcept;
   void step_seeds(const EnergyBranches& whole, const DeviceDraws& draws,
                   GridWorkspace& workspace) noexcept;
+  void next_place_of_seeds() noexcept;
   void step_missing(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
   void step_nodes(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;
   void step_checks(const DeviceDraws& draws, GridWorkspace& workspace) noexcept;

@@ -49,9 +49,9 @@ struct TrialSettings : DrawSettings {
 /// Where a polynomial does not hold all over the ranges, as signals end and others begin, and there
 /// is memory for `TrialSettings::pieces`, the ranges are cut along f0 (and damping), and each part
 /// has branches and polynomials of its own; where these fail too, it is cut in two, as long as
-/// more than 1/256 of the draws are in it and all pieces together cost no more than a quarter of
-/// the refinements that they save, as the first trials show (or half a second on a PC, if that is
-/// more). What is left is refined.
+/// more than 1/256 of the draws are in it and the pieces made so far have cost no more than a
+/// quarter of the refinements that they save, as the first trials show (or half a second on a PC,
+/// if that is more). What is left is refined.
 ///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
 /// estimate's S and multiplied by the square of their ratio.
