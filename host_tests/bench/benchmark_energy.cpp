@@ -1,6 +1,8 @@
 // What each step towards the maximum energy costs, on the device of the paper's Table 2.
 #include <benchmark/benchmark.h>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "emax/base/elementary.hpp"
 #include "emax/energy/energy_search.hpp"
@@ -9,6 +11,7 @@
 #include "emax/energy/switching_signal.hpp"
 #include "emax/uncertainty/energy_trials.hpp"
 
+#include "desk/trials/paper_trials.hpp"
 #include "support/paper_device.hpp"
 
 namespace emax {
@@ -139,6 +142,29 @@ void one_trial(benchmark::State& state, Method method) {
 }
 BENCHMARK_CAPTURE(one_trial, best, Method::kBest)->Arg(2)->Arg(10);
 BENCHMARK_CAPTURE(one_trial, paper, Method::kPaper)->Arg(2)->Arg(10);
+
+/// As the program on a PC makes them: several at a time in the lanes of a vector; here on one core.
+void paper_trials(benchmark::State& state) {
+  constexpr std::size_t kDevices = 64;
+  std::vector<Accelerometer> devices;
+  for (std::size_t i = 0; i < kDevices; ++i) {
+    const double place = 2.0 * static_cast<double>(i) / (kDevices - 1.0) - 1.0;
+    devices.push_back({1.037 + 0.003 * place, 4073.0 - 6.0 * place, 0.3182 + 0.0004 * place});
+  }
+  std::vector<double> energies(kDevices);
+  const auto cells = static_cast<std::size_t>(500 * state.range(0));  // Of 2 us.
+  std::uint64_t made = 0;
+  for (auto _ : state) {
+    desk::find_paper_energies(paper_model(), {duration_s(state), cells, 30}, 1,
+                              Span<const Accelerometer>(devices.data(), devices.size()),
+                              Span<double>(energies.data(), energies.size()));
+    benchmark::DoNotOptimize(energies.data());
+    made += kDevices;
+  }
+  state.counters["trials/s"] =
+      benchmark::Counter(static_cast<double>(made), benchmark::Counter::kIsRate);
+}
+BENCHMARK(paper_trials)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace emax
