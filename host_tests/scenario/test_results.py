@@ -364,7 +364,7 @@ class FigureValues(ProgramTest):
         options = ["report", "--model", "0.1,1000,0.7071068", "--order", "2", "--trend", "none", "--time"]
         done = self.run_program(*options, "0.02", "--json")
         self.assertEqual(done.returncode, 0)
-        self.assertRegex(done.stderr.decode(), r"^emax: --model: .* sensor and filter are nearly the same; .*; so E, trials and "
+        self.assertRegex(done.stderr.decode(), r"^emax: --model: .* rounding hides it; .*; so E, trials and "
                                                r"trend are those of --criterion band\n$")
         found = json.loads(done.stdout)
         self.assertEqual((found["energy"]["criterion"], found["energy"]["delay_mode"]), ("band", "none"))

@@ -108,8 +108,7 @@ const char* explain(Status status) noexcept {
              "order, or take no delay out.";
     case Status::kLostDigits:
       return "The error is the difference of two outputs, and so small beside them that rounding "
-             "hides it: the time is too short, or sensor and filter are nearly the same; take a "
-             "longer time, or another cutoff or order.";
+             "hides it; take a longer time, or another cutoff or order.";
   }
   return "The status code is not known; the data it came from is damaged, so start the work again.";
 }

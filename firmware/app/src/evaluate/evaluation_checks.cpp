@@ -22,14 +22,14 @@ constexpr char kWrongDevice[] =
     "from 1e-4 to below 1; check the parameters and their units.";
 constexpr char kWrongUncertainty[] = "An uncertainty is below 0 or not a number; give 0 or more.";
 constexpr char kBoxTooLarge[] =
-    "The ranges of the parameters, estimate minus to plus standard uncertainty, leave what a "
+    "The ranges of the parameters, estimate -u to +u, leave what a "
     "device may be (S and f0 above 0, damping from 1e-4 to below 1); give smaller uncertainties.";
 constexpr char kNormalTooWide[] =
     "Draws of the parameters leave what a device may be (S and f0 above 0, damping from 1e-4 to "
     "below 1) 65 times in a row, or the covariance is none; give smaller uncertainties.";
 constexpr char kOverdamped[] =
     "The damping is 1 or more; devices with a resonance are supported, with a damping from 1e-4 to "
-    "below 1, because fit and grid follow the resonance.";
+    "below 1.";
 constexpr char kOnlySensitivity[] =
     "The points determine the sensitivity alone: they lie so far below the resonance that f0 and "
     "the damping may be anything; measure nearer to it.";
