@@ -305,8 +305,11 @@ class Devices(PageTest):
         first = {"device": "sensor B", "serial": "4711", "operator": "Meier", "date": "2001-02-03", "note": "after the repair"}
         for label, value in first.items():
             self.fill(f"label-{label}", value)
+        self.assertEqual(self.text("labels-of"), "Labels of the next device.")
         self.drop(DATA / "tables" / "plain.csv")
+        self.assertIn("Labels of plain, the device whose result is below.", self.text("labels-of"))
         self.fill("label-device", "sensor B")
+        self.assertIn("Labels of sensor B,", self.text("labels-of"))
         self.assertEqual(self.results()["labels"], first)
         self.drop(DATA / "tables" / "plain.csv")
         self.assertEqual(self.results()["labels"], {**dict.fromkeys(first), "device": "plain", "operator": "Meier"})
@@ -570,6 +573,12 @@ class Bench(PageTest):
         self.wait_for(f"{order}.getAttribute('aria-invalid') === 'true'")
         self.assertEqual(self.browser.evaluate(f"{order}.value"), "10")
         self.assertIn('-222,"Data out of range', self.browser.evaluate(f"{order}.parentElement.textContent"))
+        # A field is for a value, the console for lines.
+        self.speak("SENS:SWE:REP 3")
+        self.browser.evaluate(change.format(order, "5;*RST"))
+        self.wait_for(f"{order}.parentElement.textContent.includes('one value is expected')")
+        self.assertEqual(self.browser.evaluate(f"{order}.value"), "10")
+        self.assertEqual(self.speak("CALC:FILT:ORD?;:SENS:SWE:REP?"), ["10;3"])
         self.browser.evaluate(change.format(order, "4"))
         self.assertEqual(self.speak("CALC:FILT:ORD?"), ["4"])
         self.assertIs(self.browser.evaluate(f"{order}.hasAttribute('aria-invalid')"), False)

@@ -262,6 +262,9 @@ class App {
   }
 
   async change(header, value) {
+    if (/[;\n]/.test(value)) {
+      return 'one value is expected here; the console below takes whole lines';
+    }
     try {
       await this.scpi.tell(`${header} ${value}`);
     } catch (error) {
@@ -546,6 +549,7 @@ class App {
     element('save-json').hidden = !device.json;
     element('save-csv').hidden = !device.trace;
     element('again').hidden = device.isPartial || (!device.trace && !device.model);
+    element('labels-of').textContent = `Labels of ${device.labels.device}, the device whose result is below. What comes next takes over who measured, and nothing else.`;
     document.title = `${isSimulatedDevice(device) ? 'Simulation - ' : ''}${device.labels.device} - emax`;
     this.markStale();
   }
@@ -644,6 +648,7 @@ class App {
     LABELS.forEach(([key]) => {
       element(`label-${key}`).value = '';
     });
+    element('labels-of').textContent = 'Labels of the next device.';
     document.title = 'emax';
   }
 
