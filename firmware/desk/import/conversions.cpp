@@ -205,6 +205,13 @@ class ConversionSetter final {
       unusual = column.coverage > 0.0 && column.coverage != kImportCoverage ? u : unusual;
       silent = column.coverage == 0.0 && statements.coverage == 0.0 ? u : silent;
     }
+    if (silent != nullptr && statements.doubtful_line != 0) {
+      return error_at(statements.doubtful_line,
+                      "this line speaks of a reference and says " +
+                          text_of_coverage(statements.doubtful_coverage) +
+                          ": of that one, or of the uncertainties in the table",
+                      "expected it in the name of each uncertainty, such as \"U (k=2)\"");
+    }
     if (unusual == nullptr || silent == nullptr) {
       return {};
     }

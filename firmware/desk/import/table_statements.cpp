@@ -7,6 +7,7 @@
 
 #include "emax/base/decimal.hpp"
 
+#include "desk/import/conversions.hpp"
 #include "desk/import/input_units.hpp"
 
 namespace emax::desk {
@@ -27,6 +28,7 @@ constexpr std::string_view kStandardWords[] = {"standard uncertaint", "standardu
                                                "standardmessunsicherheit", "incertitude-type",
                                                "incertitude type"};
 constexpr std::string_view kExpandedWords[] = {"expanded", "erweitert", "multipli", "largie"};
+constexpr std::string_view kReferenceWords[] = {"referen", "f\xC3\xA9rence", "des normals"};
 constexpr std::string_view kUnitWords[] = {"units",         "unit",         "einheiten", "einheit",
                                            "unit\xC3\xA9s", "unit\xC3\xA9", "unidades"};
 
@@ -164,6 +166,10 @@ ImportError StatementReader::take(std::size_t line, std::string_view text) {
 
 ImportError StatementReader::take_coverage(std::size_t line, std::string_view text) {
   const std::string letters = small(text);
+  if (has_any(letters, kReferenceWords)) {
+    take_doubtful(line, text);
+    return {};
+  }
   speaks_of_expanded_ = speaks_of_expanded_ || has_any(letters, kExpandedWords);
   standard_line_ = standard_line_ == 0 && has_any(letters, kStandardWords) ? line : standard_line_;
   const double coverage = coverage_in(text);
@@ -180,6 +186,15 @@ ImportError StatementReader::take_coverage(std::size_t line, std::string_view te
   statements_.coverage = coverage;
   statements_.coverage_line = line;
   return {};
+}
+
+void StatementReader::take_doubtful(std::size_t line, std::string_view text) {
+  const double stated = coverage_in(text);
+  const double coverage = stated > 0.0 ? stated : has_any(small(text), kStandardWords) ? 1.0 : 0.0;
+  if (coverage >= kLeastCoverage && coverage <= kMostCoverage && coverage != kImportCoverage) {
+    statements_.doubtful_coverage = coverage;
+    statements_.doubtful_line = line;
+  }
 }
 
 ImportError StatementReader::take_unit(std::size_t line, Role role, const std::string& spelling) {

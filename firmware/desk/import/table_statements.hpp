@@ -20,6 +20,10 @@ struct StatedUnit {
 struct Statements {
   double coverage = 0.0;  ///< k of all uncertainties; 0 if no line states it.
   std::size_t coverage_line = 0;
+  /// A k other than the usual one in a line that speaks of a reference sensor: perhaps only that
+  /// sensor's. 0 if there is none.
+  double doubtful_coverage = 0.0;
+  std::size_t doubtful_line = 0;
   StatedUnit frequency;
   StatedUnit amplitude;
   StatedUnit phase;
@@ -49,6 +53,7 @@ class StatementReader final {
 
  private:
   ImportError take_coverage(std::size_t line, std::string_view text);
+  void take_doubtful(std::size_t line, std::string_view text);
   ImportError take_units(std::size_t line, std::string_view text);
   ImportError take_unit(std::size_t line, Role role, const std::string& spelling);
 

@@ -344,6 +344,22 @@ TEST(Import, CoverageFactorsThatContradict) {
             "\"U(A) (k=3)\" says k = 3, and \"U(phase)\" says nothing of its coverage factor");
   EXPECT_EQ(problem("f,A,phase,standard uncertainty of A (k=2),U(phase) k=2\n"),
             "\"standard uncertainty of A (k=2)\" states two coverage factors");
+  // Perhaps only the reference's.
+  for (const char* line :
+       {"Certificate of reference sensor: Uncertainty 0.3 % (k = 3)",
+        "# Uncertainty of the reference, coverage factor: 3", "Unsicherheit des Normals (k = 3)"}) {
+    EXPECT_EQ(
+        problem(std::string(line) + "\nf,A,phase,U(A),U(phase)\n"),
+        "this line speaks of a reference and says k = 3: of that one, or of the uncertainties "
+        "in the table");
+    expect_uncertainties(std::string(line) + "\nf,A,phase,U(A) (k=1),U(phase) (k=1)\n" + rows, 0.4,
+                         0.5);
+  }
+  EXPECT_EQ(
+      refused("f,A,phase,U(A),U(phase)\n" + rows + "# Reference: standard uncertainty 0.25 %\n")
+          .line,
+      5U);
+  expect_uncertainties("Reference: U = 0.3 % (k = 2)\nf,A,phase,U(A),U(phase)\n" + rows, 0.2, 0.25);
   // The same value twice is no contradiction.
   expect_uncertainties("k = 3\n# coverage factor: 3\nf,A,phase,U(A) (k=3),U(phase)\n" + rows,
                        0.4 / 3.0, 0.5 / 3.0);
