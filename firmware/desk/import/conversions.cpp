@@ -96,8 +96,26 @@ class ConversionSetter final {
                     "expected --input-units only for columns whose unit is not named");
   }
 
+  // A response in parts of itself, such as 0 dB at 160 Hz, has lost the sensitivity.
+  bool is_amplitude_relative(const DecibelUnit& decibel) const {
+    const Column& column = table_.columns[by_.amplitude().column];
+    const bool has_unit =
+        decibel.is_decibel ? !decibel.reference.empty() : !column.unit_spelling.empty();
+    const bool has_no_dimension = column.name.find("[-]") != std::string::npos ||
+                                  column.name.find("(-)") != std::string::npos;
+    return !has_unit && !options_.amplitude_unit.is_given() &&
+           (column.is_relative || has_no_dimension);
+  }
+
   ImportError set_amplitude_unit() {
     const DecibelUnit decibel = as_decibel(table_.columns[by_.amplitude().column].unit_spelling);
+    if (is_amplitude_relative(decibel)) {
+      return error_at(
+          table_.header_line + 1,
+          quoted(by_.amplitude().name) + " is a ratio, which leaves the sensitivity open",
+          "expected amplitudes in a unit such as mV/g; where the numbers are in one, "
+          "--input-units names it");
+    }
     if (!decibel.is_decibel) {
       return set_unit(by_.amplitude(), Quantity::kAmplitude, options_.amplitude_unit,
                       kVoltsPerAcceleration);

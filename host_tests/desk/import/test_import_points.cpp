@@ -333,6 +333,20 @@ TEST(Import, CoverageFactors) {
   }
 }
 
+TEST(Import, RatiosAreNoSensitivities) {
+  for (const char* name : {"Sensitivity [-]", "Sensitivity (-)", "Relative sensitivity",
+                           "Relative sensitivity [dB]"}) {
+    const std::string text = std::string("f,") + name + ",phase,U(A) [%],U(phase)\n" + kPlainRows;
+    const std::string whole = std::string("\"") + name + "\"";
+    EXPECT_EQ(refused(text).problem, whole + " is a ratio, which leaves the sensitivity open");
+  }
+  for (const char* name : {"Relative sensitivity [mV/g]", "rel. Sensitivity [dB re 1 mV/g]"}) {
+    EXPECT_EQ(imported(std::string("f,") + name + ",phase,U(A) [%],U(phase)\n" + kPlainRows)
+                  .points.size(),
+              3U);
+  }
+}
+
 TEST(Import, CoverageFactorsThatContradict) {
   const std::string rows = kPlainRows;
   const auto problem = [&rows](const std::string& head) { return refused(head + rows).problem; };
