@@ -63,7 +63,7 @@ TrialSettings settings_of(const Case& c, Distribution distribution, bool gain_fo
   (void)settings.generator.seed(Generator::k2006, kSeed);
   settings.gain_follows = gain_follows;
   settings.search.duration_s = c.duration_s;
-  settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+  settings.pieces = TrialPieces({pieces.data(), pieces.size()});
   return settings;
 }
 

@@ -33,7 +33,7 @@ std::string run(const Device& device, const Settings& settings, app::EvaluationH
   std::vector<double> store(room, -1.0);
   std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
   run.lend_trial_store(Span<double>(store.data(), store.size()));
-  run.lend_trial_pieces(Span<TrialPiece>(pieces.data(), pieces.size()));
+  run.lend_trial_pieces(TrialPieces({pieces.data(), pieces.size()}));
   run.lend_helper(helper);
   test::finish(results);
   return json_of(results);

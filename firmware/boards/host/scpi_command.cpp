@@ -106,7 +106,7 @@ class ScpiJob final {
       instrument.lend_trial_store(Span<double>(trials_.get(), kStoredTrials));
     }
     if (pieces_ != nullptr) {
-      instrument.lend_trial_pieces(Span<TrialPiece>(pieces_.get(), EnergyTrials::kManyPieces));
+      instrument.lend_trial_pieces(TrialPieces({pieces_.get(), EnergyTrials::kManyPieces}));
     }
     instrument.start();
     while (!desk::stop_requested()) {

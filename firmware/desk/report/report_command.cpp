@@ -123,7 +123,7 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
   const std::unique_ptr<TrialPiece[]> pieces(new (std::nothrow)
                                                  TrialPiece[EnergyTrials::kManyPieces]);
   if (pieces != nullptr) {
-    sequencer.lend_trial_pieces(Span<TrialPiece>(pieces.get(), EnergyTrials::kManyPieces));
+    sequencer.lend_trial_pieces(TrialPieces({pieces.get(), EnergyTrials::kManyPieces}));
   }
   ThreadHelper helper(options.threads);
   sequencer.lend_helper(&helper);

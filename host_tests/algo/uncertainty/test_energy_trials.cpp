@@ -265,7 +265,7 @@ TEST(EnergyTrials, InPiecesOfTheRangesFindWhatAFullSearchOfThatDeviceFinds) {
       settings.covariance[1][1] =
           sensor.box.natural_frequency_hz * sensor.box.natural_frequency_hz / 3.0;
       settings.covariance[2][2] = sensor.box.damping * sensor.box.damping / 3.0;
-      settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+      settings.pieces = TrialPieces({pieces.data(), pieces.size()});
       ASSERT_EQ(start(settings, model), Status::kOk);
       EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
       if (distribution == Distribution::kBox) {
@@ -303,7 +303,7 @@ TEST(EnergyTrials, AreWorthTheMorePiecesTheMoreThereAre) {
             Status::kOk);
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   settings.box = {0.003, 1500.0, 0.008};
-  settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+  settings.pieces = TrialPieces({pieces.data(), pieces.size()});
   const auto refined = [] {
     std::uint32_t count = 0;
     for (std::uint32_t t = 0; t < kLooked; ++t) {
@@ -449,7 +449,7 @@ TEST(NormalTrials, InPiecesKnowTheSignalsAtTheirCornersToo) {
   settings.covariance[0][0] = 0.003 * 0.003;
   settings.covariance[1][1] = 80.0 * 80.0;
   settings.covariance[2][2] = 0.016 * 0.016;
-  settings.pieces = Span<TrialPiece>(pieces.data(), pieces.size());
+  settings.pieces = TrialPieces({pieces.data(), pieces.size()});
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);
   EXPECT_GT(trials.notes().pieces, EnergyTrials::kFirstPieces);
   for (std::uint32_t t = 0; t < 200; ++t) {

@@ -23,6 +23,24 @@ struct TrialPiece {
   std::size_t child = 0;   ///< into this piece and the next one; 0 if it is not.
 };
 
+class EnergyTrials;
+
+/// Memory for polynomials of parts of the ranges, and the code that makes them: an image where
+/// nobody makes one of these of memory has neither.
+class TrialPieces {
+ public:
+  /// None.
+  constexpr TrialPieces() noexcept = default;
+  /// @param memory `EnergyTrials::kFirstPieces` and more; 96 are enough for most. Fewer are none.
+  explicit TrialPieces(Span<TrialPiece> memory) noexcept;
+
+ private:
+  friend class EnergyTrials;
+
+  Span<TrialPiece> memory_;
+  void (*prepare_)(EnergyTrials&, GridWorkspace&) = nullptr;
+};
+
 struct TrialSettings : DrawSettings {
   bool gain_follows =
       false;  ///< The filter's gain is each trial's sensitivity, not the estimate's.
@@ -30,10 +48,8 @@ struct TrialSettings : DrawSettings {
   /// is left out. For figures in units of S, whose gain is S. Trials take as many numbers as else.
   bool holds_sensitivity = false;
   SearchSettings search;
-  /// Memory for polynomials of parts of the ranges, where those of the whole do not hold: nobody
-  /// else's while there are trials. None, or `EnergyTrials::kFirstPieces` and more; 96 are enough
-  /// for most.
-  Span<TrialPiece> pieces;
+  /// Where the polynomials of the whole do not hold: nobody else's while there are trials.
+  TrialPieces pieces;
   /// How many trials there will be, if that is known: the more there are, the more pieces are cut
   /// where each trial is refined without them.
   std::uint32_t expected_trials = 0;
@@ -147,8 +163,11 @@ class EnergyTrials {
   BranchNotes notes() const noexcept;
 
  private:
+  friend class TrialPieces;
+
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
   bool is_cut() const noexcept { return pieces_begun_ != 0 && pieces_ready_ == pieces_used_; }
+  static void prepare_pieces(EnergyTrials& trials, GridWorkspace& workspace) noexcept;
   void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
   void cut(TrialPiece& piece) noexcept;
@@ -162,6 +181,7 @@ class EnergyTrials {
 
   EnergyBranches branches_ = {};
   Span<TrialPiece> pieces_;
+  void (*prepare_pieces_)(EnergyTrials&, GridWorkspace&) = nullptr;
   std::size_t pieces_used_ = 0;
   std::size_t work_of_pieces_ = 0;
   double work_saved_ = 0.0;  // By pieces, in refinements times switches, as the work of them.

@@ -182,7 +182,7 @@ void Evaluation::drop_incomplete() noexcept {
   }
 }
 
-void Evaluation::lend_trial_pieces(Span<TrialPiece> pieces) noexcept { work_.pieces_ = pieces; }
+void Evaluation::lend_trial_pieces(TrialPieces pieces) noexcept { work_.pieces_ = pieces; }
 
 void Evaluation::lend_helper(EvaluationHelper* helper) noexcept { work_.helper_ = helper; }
 

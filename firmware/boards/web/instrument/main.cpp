@@ -92,7 +92,7 @@ void switch_on() noexcept {
   const app::Board board = {EMAX_BOARD_NAME, "0", &bench_settings, &simulated, memory_use};
   instrument = &memory.make(ports, board);
   instrument->lend_trial_store(Span<double>(trials, kStoredTrials));
-  instrument->lend_trial_pieces(Span<TrialPiece>(pieces, EnergyTrials::kManyPieces));
+  instrument->lend_trial_pieces(TrialPieces({pieces, EnergyTrials::kManyPieces}));
   instrument->start();
 }
 

@@ -107,7 +107,7 @@ class Evaluation {
   /// Lends memory for the polynomials of parts of the ranges (`TrialSettings::pieces`): with it
   /// trials of devices with many switches take microseconds, without it each may be a refinement.
   /// After a start, until the evaluation is done.
-  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept;
+  void lend_trial_pieces(TrialPieces pieces) noexcept;
 
   /// Lends other cores, or null for none. They make the trials for which a store is lent, and the
   /// draws of the fit. After a start, until the evaluation is done.

@@ -93,7 +93,7 @@ class EvaluationWorkspace {
                 sizeof(FigureModel) <= sizeof(double) * kWorkspaceNumbers);
 
   Span<double> store_;
-  Span<TrialPiece> pieces_;
+  TrialPieces pieces_;
   EvaluationHelper* helper_ = nullptr;
   double progress_ = 0.0;
   std::uint32_t stored_ = 0;  // Trials 0 to stored_ - 1 are in the store.

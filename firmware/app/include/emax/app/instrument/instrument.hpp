@@ -118,7 +118,7 @@ class Instrument {
   /// Lends memory for the values of the trials: as `Evaluation::lend_trial_store()`.
   void lend_trial_store(Span<double> store) noexcept { sequencer_.lend_trial_store(store); }
   /// Lends memory for their polynomials: as `Evaluation::lend_trial_pieces()`.
-  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { sequencer_.lend_trial_pieces(pieces); }
+  void lend_trial_pieces(TrialPieces pieces) noexcept { sequencer_.lend_trial_pieces(pieces); }
 
   /// @returns All commands with their texts, for documentation.
   static Span<const scpi::Command<Instrument>> commands() noexcept;

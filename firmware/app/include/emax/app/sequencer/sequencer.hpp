@@ -183,7 +183,7 @@ class Sequencer {
   /// evaluation that begins from now on.
   void lend_trial_store(Span<double> store) noexcept { trial_store_ = store; }
   /// The same for `Evaluation::lend_trial_pieces()`.
-  void lend_trial_pieces(Span<TrialPiece> pieces) noexcept { trial_pieces_ = pieces; }
+  void lend_trial_pieces(TrialPieces pieces) noexcept { trial_pieces_ = pieces; }
   /// The same for `Evaluation::lend_helper()`.
   void lend_helper(EvaluationHelper* helper) noexcept { helper_ = helper; }
 
@@ -232,7 +232,7 @@ class Sequencer {
 
   hal::AnalogStream* stream_ = nullptr;  // Of the sweep or loopback that runs.
   Span<double> trial_store_;
-  Span<TrialPiece> trial_pieces_;
+  TrialPieces trial_pieces_;
   EvaluationHelper* helper_ = nullptr;
   Refusal failure_;
   Job job_ = Job::kNone;
