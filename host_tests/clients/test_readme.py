@@ -165,7 +165,7 @@ class ReadmeTest(unittest.TestCase):
         path.write_text(script)
         address = ADDRESS.replace("5025", str(instrument.port))
         return subprocess.run([sys.executable, "-W", "ignore", path, address], check=False,
-                              capture_output=True, text=True, timeout=50)
+                              capture_output=True, text=True, timeout=500)
 
 
 if __name__ == "__main__":

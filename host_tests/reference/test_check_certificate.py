@@ -43,7 +43,7 @@ check_certificate.matrix_of = remembered(check_certificate.matrix_of)
 
 def certify(*arguments: str) -> subprocess.CompletedProcess:
     return subprocess.run([PROGRAM, "certify", "--model", "1.037,4073,0.3182", *arguments],
-                          capture_output=True, timeout=55, check=False)
+                          capture_output=True, timeout=500, check=False)
 
 
 class CheckCertificate(unittest.TestCase):
@@ -66,7 +66,7 @@ class CheckCertificate(unittest.TestCase):
             cls.result = json.loads(run.stdout)
             cls.checked = subprocess.run(
                 [sys.executable, "-B", check_certificate.__file__, str(path)],
-                capture_output=True, timeout=55, check=False)
+                capture_output=True, timeout=500, check=False)
             cls.files = [file.name for file in pathlib.Path(directory).iterdir()]
             cls.certificate = json.loads(path.read_text(encoding="ascii"))
 
@@ -324,7 +324,7 @@ class CheckOtherCertificates(unittest.TestCase):
                 path = pathlib.Path(directory) / "certificate.json"
                 run = subprocess.run(
                     [PROGRAM, "certify", "--model", model, "--time", "0.0005", "--effort", "0.5", "--rounds", "5",
-                     "--out", str(path)], capture_output=True, timeout=55, check=False)
+                     "--out", str(path)], capture_output=True, timeout=500, check=False)
                 self.assertEqual((run.returncode, run.stderr), (0, b""))
                 certificate, bound = check_certificate.check(json.loads(path.read_text(encoding="ascii")))
                 self.assertGreater(bound, certificate.energy)
@@ -336,7 +336,7 @@ class CheckOtherCertificates(unittest.TestCase):
             path = pathlib.Path(directory) / "certificate.json"
             run = subprocess.run(
                 [PROGRAM, "certify", "--model", "1,25000,0.02", "--criterion", "band", "--time", "0.002", "--effort", "0.5",
-                 "--rounds", "5", "--out", str(path)], capture_output=True, timeout=55, check=False)
+                 "--rounds", "5", "--out", str(path)], capture_output=True, timeout=500, check=False)
             self.assertEqual((run.returncode, run.stderr), (0, b""))
             certificate, bound = check_certificate.check(json.loads(path.read_text(encoding="ascii")))
             self.assertGreater(bound, certificate.energy)
@@ -378,7 +378,7 @@ class CheckBoxCertificate(unittest.TestCase):
             path = pathlib.Path(directory) / "certificate.json"
             run = subprocess.run(
                 [PROGRAM, "certify", "--model", cls.MODEL, "--time", "0.001", "--effort", EFFORT, "--out",
-                 str(path), *options], capture_output=True, timeout=55, check=False)
+                 str(path), *options], capture_output=True, timeout=500, check=False)
             if run.returncode != 0 or run.stderr:
                 raise AssertionError(run.stderr)
             return json.loads(path.read_text(encoding="ascii")), run.stdout
@@ -483,7 +483,7 @@ class CertifyStops(unittest.TestCase):
                 run.wait(timeout=6)
             except subprocess.TimeoutExpired:
                 run.send_signal(signal.SIGINT)
-            output, errors = run.communicate(timeout=45)
+            output, errors = run.communicate(timeout=450)
             self.assertEqual((run.returncode, errors), (0, b""))
             self.assertIn(b"for every such signal", output)
             certificate, bound = check_certificate.check(
@@ -493,7 +493,7 @@ class CertifyStops(unittest.TestCase):
 
 class CertifyRefuses(unittest.TestCase):
     def refuses(self, words, *arguments):
-        run = subprocess.run([PROGRAM, "certify", *arguments], capture_output=True, timeout=55,
+        run = subprocess.run([PROGRAM, "certify", *arguments], capture_output=True, timeout=500,
                              check=False)
         self.assertEqual(run.returncode, 2)
         self.assertEqual(run.stdout, b"")

@@ -167,7 +167,7 @@ class FilesThatAreKept(ProgramTest):
             tables.append(self.write([OTHER, *rows], name=f"{number}.csv"))
         runs = [self.start_program("report", "--points", table, *QUICK, "--out", "out") for table in tables]
         for run in runs:
-            error = run.communicate(timeout=60)[1]
+            error = run.communicate(timeout=500)[1]
             self.assertEqual(run.returncode, 0, error)
         self.assertEqual(sorted(os.listdir(self.directory / "out")), ["report.txt", "results.json"])
         sensitivity = json.loads((self.directory / "out/results.json").read_text())["model"]["S"]

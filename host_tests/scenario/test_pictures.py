@@ -414,7 +414,7 @@ class WithoutGnuplot(PictureTest, ProgramTest):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
-        output, error = process.communicate(timeout=20)
+        output, error = process.communicate(timeout=200)
         self.assertEqual((process.returncode, output, error), (130, b"", b"emax: stopped\n"))
         self.assertFalse((self.directory / "out").exists())
         self.assertRaises(ProcessLookupError, os.kill, int(started.read_text()), 0)

@@ -799,7 +799,7 @@ class Endings(ProgramTest):
                 self.wait_for((self.directory / "out").exists)  # The long work comes after it.
                 time.sleep(0.3)
                 process.send_signal(number)
-                output, error = process.communicate(timeout=20)
+                output, error = process.communicate(timeout=200)
                 self.assertEqual((process.returncode, output, error), (130, b"", b"emax: stopped\n"))
                 self.assertEqual(self.files(), [])
 
@@ -810,7 +810,7 @@ class Endings(ProgramTest):
         self.wait_for((self.directory / "out").exists)  # The sweep comes after it.
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
-        output, error = process.communicate(timeout=20)
+        output, error = process.communicate(timeout=200)
         self.assertEqual((process.returncode, output), (130, b""))
         self.assertEqual(error, b"emax: stopped during the sweep, drive at zero\n")
         self.assertEqual(self.files(), [])
@@ -826,7 +826,7 @@ class Endings(ProgramTest):
         process = self.start_program(*self.LONG)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=20)
+        process.communicate(timeout=200)
         self.assertEqual((self.directory / "out/report.txt").read_text(), report)
         self.assertEqual(sorted(os.listdir(self.directory / "out")), FILES)
 
@@ -835,7 +835,7 @@ class Endings(ProgramTest):
         process.stdin.write(b"# more than a pipe holds: it is being read when this returns\n" * 5000)
         process.stdin.flush()
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 130)
+        self.assertEqual(process.wait(timeout=200), 130)
         self.assertEqual(process.stderr.read(), b"emax: stopped\n")
         process.communicate()
 
@@ -856,7 +856,7 @@ class Endings(ProgramTest):
         except OSError:  # The other side has been closed.
             pass
         os.close(ours)
-        process.communicate(timeout=20)
+        process.communicate(timeout=200)
         return shown.decode("ascii")
 
     def test_progress_on_a_terminal(self):
