@@ -176,22 +176,22 @@ inline constexpr SettingRow kSweepSettingRows[] = {
                     "Of the device by its data sheet; 0 if not known"),
     setting("drive full scale", EMAX_SETTING(SweepSettings, drive_full_scale_v),
             SettingGroup::kDrive, Concern::kSweep)
-        .within(0.0, ranges::kLargest, "a number of V, or 0")
-        .as_option({"drive-full-scale", "VOLTS", "a number of V, or 0",
+        .within(0.0, ranges::kLargest, "1 mV or more, or 0")
+        .as_option({"drive-full-scale", "VOLTS", "1 mV or more, or 0",
                     "outside the front end; 0 for the converter's own"})
         .as_command("SOURce:FULLscale", "<V>", "Of the drive, outside the front end; 0: at the pin",
                     "V"),
     setting("reference full scale", EMAX_SETTING(SweepSettings, reference_full_scale_v),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, ranges::kLargest, "a number of V, or 0")
-        .as_option({"reference-full-scale", "VOLTS", "a number of V, or 0",
+        .within(0.0, ranges::kLargest, "1 mV or more, or 0")
+        .as_option({"reference-full-scale", "VOLTS", "1 mV or more, or 0",
                     "the same of the reference's channel"})
         .as_command("[SENSe:]REFerence:FULLscale", "<V>",
                     "Of its channel, outside the front end; 0: at the pin", "V"),
     setting("device full scale", EMAX_SETTING(SweepSettings, device_full_scale_v),
             SettingGroup::kChain, Concern::kSweep)
-        .within(0.0, ranges::kLargest, "a number of V, or 0")
-        .as_option({"device-full-scale", "VOLTS", "a number of V, or 0",
+        .within(0.0, ranges::kLargest, "1 mV or more, or 0")
+        .as_option({"device-full-scale", "VOLTS", "1 mV or more, or 0",
                     "the same of the device's channel"})
         .as_command("[SENSe:]DEVice:FULLscale", "<V>",
                     "Of its channel, outside the front end; 0: at the pin", "V"),
