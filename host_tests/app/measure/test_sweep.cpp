@@ -43,6 +43,30 @@ TEST(SweepSettings, DefaultsAreTheFrequenciesOfTable1) {
   }
 }
 
+// As many volts from the device as from the reference, and hardly any phase: noise chooses whether
+// the ratio looks like that of exchanged channels.
+TEST(Sweep, ExchangedChannelsAreNotSeenInNoise) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    BenchSettings bench;
+    bench.seed = seed;
+    bench.device = {1.0, 2000.0, 0.02};
+    SweepSettings settings = default_sweep_settings();
+    settings.expected_sensitivity = 1.0;
+    settings.frequency_count = 4;
+    settings.frequency_hz = {30.0, 60.0, 100.0, 1000.0};
+    SweepRun run(bench);
+    run.to_end(settings);
+    EXPECT_EQ(run.sweep.status, Status::kOk) << emax::explain(run.sweep.status) << " seed " << seed
+                                             << " at " << run.sweep.failed_frequency_hz;
+    // Where the device magnifies, they are seen.
+    bench.fault = {emax::sim::FaultKind::kSwappedChannels, 0};
+    bench.device.natural_frequency_hz = 1500.0;
+    SweepRun swapped(bench);
+    swapped.to_end(settings);
+    EXPECT_EQ(swapped.sweep.status, Status::kSwappedChannels) << "seed " << seed;
+  }
+}
+
 TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
   double squares = 0.0;
   std::size_t components = 0;

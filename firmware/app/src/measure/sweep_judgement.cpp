@@ -31,6 +31,7 @@ constexpr double kLookShare = 0.25;           // and of the drive, for the last.
 constexpr double kMostHum = 0.1;              // Of the ratio, at a point,
 constexpr double kMostHumOfCheck = 0.02;      // and at the check, which others are judged by.
 constexpr double kSwappedShare = 0.16;        // Of the squares of the distances to both.
+constexpr double kAlike = 0.02;               // Distance to the expected ratio that says nothing.
 constexpr double kForeseen = 0.09;            // Square of a share of the 1/K that is expected,
 constexpr double kShortestBase = 0.1;         // Of the square of the frequency, for a slope.
 constexpr double kForeseenFlat = 1e-4;        // and of that at the check frequency.
@@ -198,7 +199,9 @@ Status Sweep::status_at_first(const Reading& reference, const Reading& device) n
   const bool is_judged =
       results_.stage != SweepStage::kCheckBefore && device.distortion <= kFlaggedShare;
   const Status cables = is_judged
-                            ? plausibility_of(ratio_of(reference.fit.phasor(), device.fit.phasor()))
+                            ? plausibility_of(ratio_of(reference.fit.phasor(), device.fit.phasor()),
+                                              reference.weak_v / reference.fit.amplitude_v +
+                                                  device.weak_v / device.fit.amplitude_v)
                             : Status::kOk;
   if (cables != Status::kOk || !is_lost) {
     return cables;
@@ -412,7 +415,7 @@ void Sweep::end_target() noexcept {
   const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
   const bool is_judged = hum <= kMostHumOfCheck;
-  const Status status = is_judged ? plausibility_of(ratio) : Status::kOk;
+  const Status status = is_judged ? plausibility_of(ratio, by_noise) : Status::kOk;
   if (status != Status::kOk) {
     suspect(status);
     return;
@@ -462,7 +465,9 @@ Complex Sweep::inverse_expected() const noexcept {
   return {before.re + slope * (step * step - 1.0), step * before.im};
 }
 
-Status Sweep::plausibility_of(const Complex& ratio) const noexcept {
+// Where device and reference give the same volts, exchanged channels have the same ratio, but for
+// the phase: there it is noise that chooses between the two, and a resonance shows them apart.
+Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept {
   const bool is_check = results_.stage != SweepStage::kPoints;
   const double factor = ratio_factor();
   const double sheet = results_.settings.expected_sensitivity;
@@ -494,7 +499,7 @@ Status Sweep::plausibility_of(const Complex& ratio) const noexcept {
   if (is_check) {
     // The check frequency is far below the resonance, where the lag is small.
     is_wrong = phase < -0.5 * kPi;
-  } else {
+  } else if (to_expected2 > (noise + kAlike) * (noise + kAlike) * expected2) {
     // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
     const double near2 = kSwappedShare * to_expected2 * factor * factor;
     is_wrong = distance2(ratio, swapped) * expected2 < near2 ||

@@ -111,7 +111,7 @@ class Sweep {
   bool is_neighbour() const noexcept;
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
   Complex inverse_expected() const noexcept;
-  Status plausibility_of(const Complex& ratio) const noexcept;
+  Status plausibility_of(const Complex& ratio, double noise) const noexcept;
   void store_point(const PointScatter& scatter, const Complex& ratio) noexcept;
   void begin_next() noexcept;
   void fail(Status status) noexcept;
