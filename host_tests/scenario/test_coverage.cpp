@@ -357,4 +357,29 @@ TEST(Coverage, OfSensorsGainsAndCorrections) {
               4 * kOfEach);
 }
 
+// Crosstalk and a bent gain move the points of a quiet bench by 100 times their own uncertainty, as
+// its settings say: no reason to doubt the fit.
+TEST(Coverage, ChiSquareHoldsWhatTheBudgetStates) {
+  double sum = 0.0;
+  double dof = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    emax::sim::BenchSettings bench;
+    bench.seed = seed;
+    bench.noise_v = 1e-3;
+    bench.crosstalk_expanded_percent = 0.05;
+    bench.linearity_expanded_percent = 0.05;
+    emax::app::SweepSettings stated = emax::app::default_sweep_settings();
+    stated.crosstalk_expanded_percent = 0.05;
+    stated.linearity_expanded_percent = 0.05;
+    const emax::WlspFit& fit = fitted(bench, stated);
+    // One in 10 000 exceeds it (Wilson, Hilferty).
+    EXPECT_LT(fit.chi2 / fit.dof, 1.65) << "seed " << seed;
+    sum += fit.chi2;
+    dof += fit.dof;
+  }
+  // Of 1620 degrees of freedom: five standard deviations, and 10 % for what is within the noise's
+  // uncertainty and that of the converters' steps.
+  EXPECT_LT(sum / dof, 1.0 + 5.0 * std::sqrt(2.0 / dof) + 0.1);
+}
+
 }  // namespace

@@ -55,6 +55,7 @@ class Trials final {
       (void)workspace_.response.add(without(fault, value, point));
     }
     (void)workspace_.response.set_common(fit_.response().common());
+    (void)workspace_.response.set_shared(fit_.response().shared());
     const Status status = workspace_.fit.fit(workspace_.response);
     const WlspFit& result = workspace_.fit.result();
     const bool is_device = status == Status::kOk || (status == Status::kNotPhysical &&

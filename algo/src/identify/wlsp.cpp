@@ -190,6 +190,7 @@ Status Wlsp::solve() noexcept {
   set_mu_uncertainties();
   fit_.dof = static_cast<std::uint32_t>(2 * response_.size() - kWlspParameters);
   fit_.common_effect = common_effect_of(scaled_);
+  explain_by_shared();
   fit_.chi2 = chi_square_of_scaled(scaled_, fit_.common_effect);
   fit_.birge_ratio = sqrt(fit_.chi2 / static_cast<double>(fit_.dof));
   if (!all_finite(fit_.mu) || !is_finite(fit_.chi2)) {
@@ -537,12 +538,89 @@ void Wlsp::add_effect(Effect effect, double largest, double (&covariance)[3][3])
   }
 }
 
-void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
-  const SharedEffects& shared = response_.shared();
+double Wlsp::largest_amplitude() const noexcept {
   double largest = 0.0;
   for (const ResponsePoint& point : response_.points()) {
     largest = point.amplitude > largest ? point.amplitude : largest;
   }
+  return largest;
+}
+
+// The points' own uncertainties know of drift, images and skew, not of leak and linearity. What no
+// change of the parameters takes up of those stays in the residuals. Each is one number of a
+// standard normal distribution, the same at all points: chi-square is judged at those numbers that
+// make it least, which is chi-square with the whole covariance.
+void Wlsp::explain_by_shared() noexcept {
+  explained_ = Explained();
+  const SharedEffects& shared = response_.shared();
+  if (!(shared.leak + shared.leak_back + shared.linearity > 0.0)) {
+    return;
+  }
+  Explained parts[kExplained];
+  double r[kExplained][kExplained] = {};
+  double rhs[kExplained] = {};
+  double row[kExplained] = {};
+  for (std::size_t k = 0; k < kExplained; ++k) {
+    NormalStep step;
+    parts[k].size[k] = 1.0;
+    for (std::size_t i = 0; i < response_.size(); ++i) {
+      add_to(step, i, effect_at(parts[k], i));
+    }
+    solve_step(step);
+    for (std::size_t j = 0; j < 3; ++j) {
+      parts[k].x[j] = step.x[j];
+      step.common_z -= step.columns_common[j] * step.x[j];
+    }
+    parts[k].common = has_common_ ? step.common_z / common_squares_ : 0.0;
+    r[k][k] = 1.0;
+    row[k] = parts[k].common;
+  }
+  rotate_in(r, rhs, row, fit_.common_effect);
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    double imaginary[kExplained] = {};
+    for (std::size_t k = 0; k < kExplained; ++k) {
+      const Complex left = left_over(parts[k], i);
+      row[k] = left.re;
+      imaginary[k] = left.im;
+    }
+    const Complex residual = normalised_residual(i);
+    rotate_in(r, rhs, row, residual.re);
+    rotate_in(r, rhs, imaginary, residual.im);
+  }
+  solve_upper(r, rhs);
+  for (std::size_t k = 0; k < kExplained; ++k) {
+    explained_.size[k] = rhs[k];
+    explained_.common += rhs[k] * parts[k].common;
+    for (std::size_t j = 0; j < 3; ++j) {
+      explained_.x[j] += rhs[k] * parts[k].x[j];
+    }
+  }
+}
+
+// Of 1/K, by leak and linearity of these sizes.
+Complex Wlsp::effect_at(const Explained& explained, std::size_t index) const noexcept {
+  const double largest = largest_amplitude();
+  Complex sum;
+  for (std::size_t k = 0; k < kExplained; ++k) {
+    const auto effect = static_cast<Effect>(static_cast<std::size_t>(Effect::kLeak) + k);
+    sum = sum + explained.size[k] * change_of(effect, index, largest);
+  }
+  return sum;
+}
+
+// Whitened: what parameters and common part do not take up of it.
+Complex Wlsp::left_over(const Explained& explained, std::size_t index) const noexcept {
+  Complex left = whiten(index, effect_at(explained, index));
+  const Columns a = whitened_columns(index);
+  for (std::size_t k = 0; k < 3; ++k) {
+    left = left - explained.x[k] * a.column[k];
+  }
+  return has_common_ ? left - explained.common * whitened_common(index) : left;
+}
+
+void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
+  const SharedEffects& shared = response_.shared();
+  const double largest = largest_amplitude();
   const double sizes[] = {shared.skew_s, shared.drift,     shared.images,
                           shared.leak,   shared.leak_back, shared.linearity};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -594,17 +672,30 @@ Complex Wlsp::whitened_residual(std::size_t index, const double (&scaled)[3]) co
 }
 
 double Wlsp::chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept {
-  double sum = common_effect * common_effect;
+  const double common = common_effect - explained_.common;
+  double sum = common * common;
+  for (const double size : explained_.size) {
+    sum += size * size;
+  }
   for (std::size_t i = 0; i < response_.size(); ++i) {
-    const Complex residual = whitened_residual(i, scaled);
-    sum += norm(has_common_ ? residual - common_effect * whitened_common(i) : residual);
+    sum += norm(explained_residual(i, scaled, common_effect));
   }
   return sum;
 }
 
+Complex Wlsp::explained_residual(std::size_t index, const double (&scaled)[3],
+                                 double common_effect) const noexcept {
+  Complex residual = whitened_residual(index, scaled);
+  if (has_common_) {
+    residual = residual - common_effect * whitened_common(index);
+  }
+  const bool is_explained =
+      norm(Complex{explained_.size[0], explained_.size[1]}) + abs(explained_.size[2]) > 0.0;
+  return is_explained ? residual - left_over(explained_, index) : residual;
+}
+
 Complex Wlsp::normalised_residual(std::size_t index) const noexcept {
-  const Complex residual = whitened_residual(index, scaled_);
-  return has_common_ ? residual - fit_.common_effect * whitened_common(index) : residual;
+  return explained_residual(index, scaled_, fit_.common_effect);
 }
 
 double Wlsp::chi_square_of(const Accelerometer& model) const noexcept {

@@ -939,6 +939,75 @@ TEST(Wlsp, SharedEffectsAreCarriedToTheParameters) {
   }
 }
 
+// 30 points of the device, K changed by the function; with a common part of 0.25 % on request.
+FrequencyResponse changed_points(std::complex<double> (*changed)(std::complex<double>, double),
+                                 bool has_common) {
+  FrequencyResponse response;
+  for (int i = 0; i < 30; ++i) {
+    ResponsePoint point = exact_point(kDevice, 200.0 * (i + 1), 1e-6, 1e-6);
+    const std::complex<double> k =
+        changed(std::polar(point.amplitude, point.phase_rad), point.frequency_hz);
+    point.amplitude = std::abs(k);
+    point.phase_rad = std::arg(k);
+    EXPECT_EQ(response.add(point), Status::kOk);
+  }
+  if (has_common) {
+    EXPECT_EQ(response.set_common(0.0025), Status::kOk);
+  }
+  return response;
+}
+
+// One error of 1.5 standard uncertainties at all points together: chi-square is 1.5^2 at most.
+TEST(Wlsp, ChiSquareKnowsWhatSharedEffectsExplain) {
+  using Value = std::complex<double>;
+  constexpr double kSize = 1.5;
+  constexpr double kU = 1e-4;
+  struct Case {
+    const char* name;
+    emax::SharedEffects shared;
+    Value (*changed)(Value k, double frequency_hz);
+  };
+  // The first two are large where the inverse of the response is.
+  const Case cases[] = {
+      {"leak", {0, 0, 0, 0, 0, kU, 0, 0}, [](Value k, double) { return k + kSize * kU; }},
+      {"leak back",
+       {0, 0, 0, 0, 0, 0, kU, 0},
+       [](Value k, double) { return 1.0 / (1.0 / k + kSize * kU); }},
+      {"linearity", {0, 0, 0, 0, 0, 0, 0, kU}, [](Value k, double) {
+         constexpr double kLargest = 1.717;  // S/(2 beta sqrt(1 - beta^2)), to 1 %.
+         return k * (1.0 + kSize * kU * std::norm(k) / (kLargest * kLargest));
+       }}};
+  for (const Case& one : cases) {
+    for (const bool has_common : {false, true}) {
+      SCOPED_TRACE(one.name);
+      FrequencyResponse response = changed_points(one.changed, has_common);
+      static Wlsp fit;
+      ASSERT_EQ(fit.fit(response), Status::kOk);
+      const WlspFit unexplained = fit.result();
+      ASSERT_EQ(response.set_shared(one.shared), Status::kOk);
+      ASSERT_EQ(fit.fit(response), Status::kOk);
+      // The linearity's largest amplitude is that of a point: 2 % of the size, twice.
+      EXPECT_LT(fit.result().chi2, 1.05 * kSize * kSize);
+      EXPECT_EQ(fit.result().model.damping, unexplained.model.damping);
+      double squares = 0.0;
+      for (std::size_t i = 0; i < response.size(); ++i) {
+        const emax::Complex residual = fit.normalised_residual(i);
+        squares += residual.re * residual.re + residual.im * residual.im;
+      }
+      EXPECT_LE(squares, fit.result().chi2);
+      if (one.shared.leak_back == 0.0) {  // That is a change of mu1, which the fit takes up.
+        EXPECT_GT(unexplained.chi2, 20.0 * fit.result().chi2);
+      }
+      // What is no effect of that kind stays seen.
+      FrequencyResponse bumpy =
+          changed_points([](Value k, double f) { return f == 3000.0 ? 1.001 * k : k; }, has_common);
+      ASSERT_EQ(bumpy.set_shared(one.shared), Status::kOk);
+      ASSERT_EQ(fit.fit(bumpy), Status::kOk);
+      EXPECT_GT(fit.result().chi2, 1e5);
+    }
+  }
+}
+
 TEST(Wlsp, TheClockIsAnErrorOfTheFrequencyAlone) {
   FrequencyResponse response;
   for (int i = 0; i < 30; ++i) {

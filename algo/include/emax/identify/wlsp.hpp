@@ -28,9 +28,9 @@ struct WlspFit {
   double u_natural_frequency_hz = 0.0;
   double u_damping = 0.0;
   double covariance[kWlspParameters][kWlspParameters] = {};
-  double mu[3] = {};    ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
-  double u_mu[3] = {};  ///< Their standard uncertainties.
-  double chi2 = 0.0;    ///< Sum of the squares of the normalised residuals and of `common_effect`.
+  double mu[3] = {};           ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
+  double u_mu[3] = {};         ///< Their standard uncertainties.
+  double chi2 = 0.0;           ///< Chi-square with the whole covariance that the points state.
   double common_effect = 0.0;  ///< The common effect found, in units of its standard uncertainty.
   double birge_ratio = 0.0;    ///< sqrt(chi2/dof): 1 where the model and the uncertainties hold.
   std::uint32_t unknown_phases = 0;  ///< Points of which only the magnitude was fitted.
@@ -112,8 +112,9 @@ class Wlsp {
   /// @param[in] index Of a point, below `response().size()`.
   /// @returns 1/K measured minus 1/K fitted at that point, whitened: L^-1 times the residual, so
   /// that both parts are near 1 in size where the stated uncertainties hold. The common effect
-  /// found is taken out first. The sum of their squares over all points, plus the square of
-  /// `common_effect`, is chi2.
+  /// found is taken out first, and so is what leak and linearity explain: those of the sizes that
+  /// make chi2 least. The sum of their squares over all points, plus the squares of `common_effect`
+  /// and of those sizes, is chi2.
   Complex normalised_residual(std::size_t index) const noexcept;
 
   /// @returns The chi-square of any other model in the same measure: against the same points, with
@@ -162,6 +163,20 @@ class Wlsp {
   Complex whiten(std::size_t index, const Complex& value) const noexcept;
   Columns whitened_columns(std::size_t index) const noexcept;
   Complex whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept;
+  /// Leak, leak back and linearity in units of their uncertainties, and what parameters and common
+  /// effect take up of them.
+  static constexpr std::size_t kExplained = 3;
+  struct Explained {
+    double size[kExplained] = {};
+    double x[3] = {};
+    double common = 0.0;
+  };
+  double largest_amplitude() const noexcept;
+  void explain_by_shared() noexcept;
+  Complex effect_at(const Explained& explained, std::size_t index) const noexcept;
+  Complex left_over(const Explained& explained, std::size_t index) const noexcept;
+  Complex explained_residual(std::size_t index, const double (&scaled)[3],
+                             double common_effect) const noexcept;
   double chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept;
 
   FrequencyResponse response_;
@@ -170,6 +185,7 @@ class Wlsp {
   double r_[3][3] = {};    // Upper triangular factor of the whitened, scaled equations.
   double scaled_[3] = {};  // mu in units of the scaled frequency: mu1, mu2 w_max, mu3 w_max^2.
   double first_scaled_[3] = {};  // The same of the fit without the common part.
+  Explained explained_;
   double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
   double given_damping_ = 0.0;
   double damping2_ = 0.0;  // By magnitudes alone, with its uncertainty.
