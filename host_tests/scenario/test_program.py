@@ -626,6 +626,15 @@ class Bench(ProgramTest):
         self.assertEqual(result.returncode, 3)
         self.assert_one_line(result.stderr, "level not reached at 160 Hz", "lower the level or raise the drive limit")
 
+    def test_interference_at_frequencies_of_the_sweep_is_named(self):
+        # Hum of 0.5 % and a third of it at three times the frequency.
+        for hum, words in (("0.005,500", "Without the point at 500 Hz chi2/dof is "),
+                           ("0.005,1000", "Without the points at 1000 and 3000 Hz chi2/dof is ")):
+            report = " ".join(self.succeed("report", *QUICK, "--bench-hum", hum).split())
+            self.assertIn(words, report)
+            self.assertIn("of 50 Hz)", report)
+        self.assertNotIn("Without the point", self.succeed("report", *QUICK))
+
     def test_fault_after_the_end_is_none(self):
         expected = self.succeed("report", *QUICK)
         result = self.run_program("report", *QUICK, "--bench-fault", "dc-drift@1000")

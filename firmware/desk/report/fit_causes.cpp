@@ -1,10 +1,13 @@
 // Why points do not fit a device, in words.
 #include "desk/report/fit_causes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <vector>
 
+#include "emax/app/report/report.hpp"
 #include "emax/identify/fit_diagnosis.hpp"
 
 namespace emax::desk {
@@ -37,14 +40,112 @@ std::string words_of_sign(const FitDiagnosis& diagnosis) {
          "or take out what makes the device's channel early.";
 }
 
+// The points without which the others fit, the worst first.
+struct LonePoints {
+  std::vector<double> frequencies_hz;
+  double reduced_before = 0.0;
+  double reduced_after = 0.0;
+};
+
+double size_of(const Wlsp& fit, std::size_t index) {
+  const Complex residual = fit.normalised_residual(index);
+  return std::hypot(residual.re, residual.im);
+}
+
+/// The points of the fit without one, and the frequency of that: the one with the largest residual.
+double leave_worst_out(const Wlsp& fit, FrequencyResponse& rest) {
+  const FrequencyResponse& all = fit.response();
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    worst = size_of(fit, i) > size_of(fit, worst) ? i : worst;
+  }
+  std::vector<double> common;
+  rest.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i != worst) {
+      (void)rest.add(all.points()[i]);
+      common.push_back(all.common()[i]);
+    }
+  }
+  (void)rest.set_common(Span<const double>(common.data(), common.size()));
+  (void)rest.set_shared(all.shared());
+  return all.points()[worst].frequency_hz;
+}
+
+LonePoints find_lone_points(const Wlsp& fit, DiagnosisWorkspace& workspace) {
+  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kOneOf = 8;  // More of them would be no exceptions.
+  LonePoints lone;
+  const WlspFit* result = &fit.result();
+  if (result->dof == 0 || result->status != Status::kOk) {
+    return {};
+  }
+  lone.reduced_before = result->chi2 / result->dof;
+  const Wlsp* now = &fit;
+  const std::size_t most = std::min(kMost, fit.response().size() / kOneOf);
+  while (result->chi2 / result->dof > app::reduced_chi_square_limit(result->dof)) {
+    if (lone.frequencies_hz.size() == most) {
+      return {};
+    }
+    lone.frequencies_hz.push_back(leave_worst_out(*now, workspace.response));
+    if (workspace.fit.fit(workspace.response) != Status::kOk) {
+      return {};
+    }
+    now = &workspace.fit;
+    result = &now->result();
+  }
+  lone.reduced_after = result->chi2 / result->dof;
+  return lone;
+}
+
+/// 50 or 60 where all of the frequencies are within 1 Hz of its multiples; else 0.
+int mains_of(const std::vector<double>& frequencies_hz) {
+  for (const int mains_hz : {50, 60}) {
+    const bool are_multiples =
+        std::all_of(frequencies_hz.begin(), frequencies_hz.end(), [mains_hz](double frequency_hz) {
+          return std::abs(std::remainder(frequency_hz, mains_hz)) <= 1.0;
+        });
+    if (are_multiples) {
+      return mains_hz;
+    }
+  }
+  return 0;
+}
+
+std::string words_of_lone_points(LonePoints lone) {
+  std::sort(lone.frequencies_hz.begin(), lone.frequencies_hz.end());
+  const bool is_one = lone.frequencies_hz.size() == 1;
+  std::string list;
+  for (std::size_t i = 0; i < lone.frequencies_hz.size(); ++i) {
+    const bool is_last = i + 1 == lone.frequencies_hz.size();
+    list += i == 0 ? "" : is_last ? " and " : ", ";
+    list += number(lone.frequencies_hz[i], 6);
+  }
+  const int mains_hz = mains_of(lone.frequencies_hz);
+  const std::string hum =
+      mains_hz == 0 ? "an interference"
+                    : "hum (" + std::string(is_one ? "it is a multiple" : "they are multiples") +
+                          " of " + std::to_string(mains_hz) + " Hz)";
+  return "Without the point" + std::string(is_one ? "" : "s") + " at " + list + " Hz chi2/dof is " +
+         number(lone.reduced_after, 2) + ", not " + number(lone.reduced_before, 2) +
+         ": likely causes are " + hum + " or a resonance of mounting or cable; move " +
+         (is_one ? "that frequency" : "them") + " by 5 Hz: hum stays behind, a resonance does not.";
+}
+
 }  // namespace
+
+std::string cause_of_measured(const Wlsp& fit) {
+  const auto workspace = std::make_unique<DiagnosisWorkspace>();
+  const LonePoints lone = find_lone_points(fit, *workspace);
+  return lone.frequencies_hz.empty() ? "" : words_of_lone_points(lone);
+}
 
 std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
   const auto workspace = std::make_unique<DiagnosisWorkspace>();
   const FitDiagnosis diagnosis = diagnose(fit, *workspace);
   switch (diagnosis.cause) {
     case FitCause::kNone:
-      return "";
+      return cause_of_measured(fit);
     case FitCause::kPhaseSign:
       return words_of_sign(diagnosis);
     case FitCause::kDelay:

@@ -282,7 +282,10 @@ Problem run_report(Span<const std::string_view> arguments) {
   const app::EvaluationResults& evaluation = bench.sequencer().evaluation();
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
-  const std::string cause = has_table ? cause_of(evaluation.fit, imported.names_phase_unit) : "";
+  const bool is_measured = options.measures() && evaluation.has_fit();
+  const std::string cause = has_table     ? cause_of(evaluation.fit, imported.names_phase_unit)
+                            : is_measured ? cause_of_measured(evaluation.fit)
+                                          : "";
   const app::Measurement measurement = bench.measurement();
   app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                 options.measures() ? &measurement : nullptr,
