@@ -167,6 +167,20 @@ TEST_F(Loopback, RefusesAnInputWithoutTheDrive) {
   }
 }
 
+// A gain that is switched between the first frequency and the end, and a channel turned round: no
+// ratio or skew is that of the channels.
+TEST_F(Loopback, RefusesGainsThatAreNotSteady) {
+  sim::BenchSettings settings;
+  for (const std::uint64_t at_frame : {60'000U, 75'000U, 90'000U, 105'000U, 120'000U}) {
+    settings.fault = {sim::FaultKind::kGainStep, at_frame};
+    EXPECT_FALSE(run(settings)) << at_frame;
+    EXPECT_EQ(sequencer_.failure().obstacle, app::Obstacle::kUnsteadyWire);
+  }
+  settings.fault = {sim::FaultKind::kInvertedPolarity, 0};
+  EXPECT_FALSE(run(settings));
+  EXPECT_EQ(sequencer_.failure().obstacle, app::Obstacle::kUnsteadyWire);
+}
+
 TEST_F(Loopback, EndsAtOnceOnRequest) {
   ASSERT_EQ(bench_.configure({}), Status::kOk);
   ASSERT_FALSE(sequencer_.loop_back(bench_, app::default_sweep_settings()));
@@ -242,6 +256,25 @@ TEST_F(InstrumentLoopback, SaysWhereTheDriveDoesNotComeIn) {
   EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale\"\n");
   EXPECT_EQ(i.ask("CORR:ACQ;RAT?"), "1,0");
   EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale\"\n");
+}
+
+TEST_F(InstrumentLoopback, KeepsTheCorrectionsWhereGainsAreNotSteady) {
+  sim::BenchSettings settings;
+  settings.fault = {sim::FaultKind::kGainStep, 90'000};
+  InstrumentBench i(settings);
+  EXPECT_EQ(i.ask("CORR:RAT 1.01,0.5;SKEW 1E-6,1E-9;ACQ;ACQ?"), "1.01,5.0E-1,1.0E-6,1.0E-9");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;unsteady gains: check wire, again\"\n");
+}
+
+// Settings of a sweep that runs stay what they are, whichever command would change them.
+TEST_F(InstrumentLoopback, IsNotKeptWhileASweepRuns) {
+  InstrumentBench i;
+  i.send("INIT");
+  i.poll(600);
+  EXPECT_EQ(i.ask("CORR:ACQ;ACQ?"), "1,0,1.25E-6,0");
+  EXPECT_EQ(i.errors(), "-221,\"Settings conflict;a sweep runs: ABOR or *WAI\"\n");
+  EXPECT_EQ(i.ask("*WAI;:CORR:ACQ;*OPC?"), "1");
+  EXPECT_EQ(i.errors(), "");
 }
 
 TEST_F(InstrumentLoopback, EndsByAnAbort) {

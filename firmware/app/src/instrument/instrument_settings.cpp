@@ -390,7 +390,13 @@ void InstrumentCommands::acquire_corrections(Instrument& i, Call& call) noexcept
   if (call.is_query()) {
     call.answer().number(current.ratio_correction).number(current.ratio_expanded_percent);
     call.answer().number(current.skew_s).number(current.skew_expanded_s);
-  } else if (i.provide_loopback(call)) {
+    return;
+  }
+  if (call.stage() == Call::Stage::kStart) {
+    // What a sweep uses is not changed behind it.
+    take(i, call, current);
+  }
+  if (!call.failed() && i.provide_loopback(call)) {
     take_corrections(i, call, *i.sequencer().loopback());
   }
 }

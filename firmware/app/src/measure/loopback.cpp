@@ -23,6 +23,8 @@ constexpr std::uint32_t kMostRestarts = 8;
 constexpr double kMostFramesOff = 16.0;  // Of the latency.
 constexpr double kStudent = 2.87;        // 95.45 %, four degrees of freedom.
 constexpr double kPercent = 100.0;
+constexpr double kMostPercent = 2.0;  // Expanded: more is no ratio that the channels have.
+constexpr double kMostRest = 0.01;    // Of the squares of the phases beside a skew, in rad^2.
 
 double angle_of(Complex number) noexcept { return atan2(number.im, number.re); }
 
@@ -193,8 +195,7 @@ void LoopbackRun::end_target() noexcept {
   }
   ++target_;
   if (target_ > kFrequencies) {
-    evaluate();
-    end(Status::kOk);
+    end(evaluate());
     return;
   }
   begin_target();
@@ -218,7 +219,7 @@ bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& refe
 }
 
 // Of phases that lie on a straight line through zero, up to what is left over.
-void LoopbackRun::evaluate() noexcept {
+Status LoopbackRun::evaluate() noexcept {
   constexpr auto kCount = static_cast<double>(kFrequencies);
   constexpr double kSquares = 341.0;  // Of the frequencies.
   const double omega = kTwoPi * format_.sample_rate_hz / kLongestPeriod;
@@ -230,6 +231,9 @@ void LoopbackRun::evaluate() noexcept {
   results_.ratio_percent = kPercent * expanded(scatter);
   results_.skew_s = slope / omega;
   results_.skew_expanded_s = expanded(rest / kSquares) / omega;
+  // A gain that was switched on the way, or a channel that is turned round.
+  const bool is_steady = results_.ratio_percent < kMostPercent && rest < kMostRest;
+  return is_steady ? Status::kOk : Status::kDistorted;
 }
 
 void LoopbackRun::end(Status status) noexcept {

@@ -73,7 +73,7 @@ class LoopbackRun {
   void end_target() noexcept;
   bool is_wired(const SineFitResult& drive, const SineFitResult& reference,
                 const SineFitResult& device) noexcept;
-  void evaluate() noexcept;
+  Status evaluate() noexcept;
   void end(Status status) noexcept;
 
   hal::StreamFormat format_;
