@@ -626,6 +626,23 @@ class Bench(ProgramTest):
         self.assertEqual(result.returncode, 3)
         self.assert_one_line(result.stderr, "level not reached at 160 Hz", "lower the level or raise the drive limit")
 
+    def test_levels_of_few_steps_are_named_with_the_least_one(self):
+        # The drive's 12 bits have steps of 4.9 mV; 1 m/s^2 at 160 Hz takes 0.5 V, within 20 %.
+        result = self.run_program("report", "--level", "0.01", "--bench-noise", "1e-4", "--bench-hum", "0")
+        self.assertEqual(result.returncode, 3)
+        line = self.assert_one_line(result.stderr, "at 160 Hz", "expected at least that for --level")
+        least = float(re.search(r"five steps of the drive's converter make ([0-9.]+) m/s\^2", line)[1])
+        self.assertAlmostEqual(least, 0.05, delta=0.01)
+        self.succeed("report", *QUICK, "--frequencies", "100,160,200", "--level", str(2 * least), "--bench-noise", "1e-4")
+
+    def test_what_a_sensitive_device_needs_is_said(self):
+        result = self.run_program("report", "--bench-truth", "100,4073,0.3182")
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "saturated channel", "five steps of the drive's converter make",
+                             "--drive-full-scale", "--device-gain and --reference-gain below 1 are attenuators")
+        # As it says: an attenuator of 10 behind the drive.
+        self.succeed("report", *QUICK, "--bench-truth", "100,4073,0.3182", "--drive-full-scale", "1", "--drive-limit", "1")
+
     def test_interference_at_frequencies_of_the_sweep_is_named(self):
         # Hum of 0.5 % and a third of it at three times the frequency.
         for hum, words in (("0.005,500", "Without the point at 500 Hz chi2/dof is "),

@@ -50,6 +50,31 @@ std::string in_line(std::string sentence) {
 }
 
 }  // namespace
+// With what an option can do about it.
+std::string words_on(const app::SweepResults& sweep) {
+  const double least_mps2 = sweep.least_level_mps2;
+  char level[64] = "";
+  if (least_mps2 > 0.0) {
+    (void)std::snprintf(level, sizeof level, "five steps of the drive's converter make %.2g m/s^2",
+                        least_mps2);
+  }
+  const std::string words = in_line(explain(sweep.status));
+  if (sweep.status == Status::kSaturated) {
+    const std::string cause = least_mps2 > 0.0
+                                  ? "; " + std::string(level) +
+                                        ", and full scale leaves less; an attenuator "
+                                        "behind the drive is told by --drive-full-scale"
+                                  : "";
+    return words + cause + "; --device-gain and --reference-gain below 1 are attenuators";
+  }
+  if (!(least_mps2 > 0.0)) {
+    return words;
+  }
+  const bool is_said = sweep.status == Status::kWeakSignal;
+  return (is_said ? "" : words + "; ") + level +
+         ", and the drive has fewer: expected at least that for --level";
+}
+
 
 Problem BenchJob::start(const ReportOptions& options) {
   options_ = &options;
@@ -171,12 +196,8 @@ Problem BenchJob::describe_sweep() const {
   const std::string where = sweep.failed_frequency_hz > 0.0
                                 ? "at " + in_hz(sweep.failed_frequency_hz)
                                 : "before the first frequency";
-  const std::string hint = sweep.status == Status::kSaturated
-                               ? "; --device-gain and --reference-gain below 1 are attenuators"
-                               : "";
   return fault(std::string(app::name_of_fault(sweep.status)) + " " + where + ": " +
-               in_line(explain(sweep.status)) + hint + " (" +
-               std::to_string(sweep.points().size()) + " of " +
+               words_on(sweep) + " (" + std::to_string(sweep.points().size()) + " of " +
                std::to_string(sweep.settings.frequency_count) + " points kept, " + drive + ")");
 }
 

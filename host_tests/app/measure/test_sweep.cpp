@@ -67,6 +67,31 @@ TEST(Sweep, ExchangedChannelsAreNotSeenInNoise) {
   }
 }
 
+// The converter's 12 bits have steps of 4.9 mV; five of them are a sine that can be set.
+TEST(Sweep, ALevelOfFewStepsIsNamedWithTheLeastLevel) {
+  BenchSettings bench;
+  bench.noise_v = 1e-4;
+  bench.hum_v = 0.0;
+  SweepSettings settings = default_sweep_settings();
+  settings.frequency_count = 3;
+  settings.frequency_hz = {160.0, 500.0, 1000.0};
+  SweepRun good(bench);
+  good.to_end(settings);
+  ASSERT_EQ(good.sweep.status, Status::kOk);
+  const SweepPoint& at_check = good.sweep.points()[0];
+  const double least_mps2 = 0.025 / at_check.drive_v * at_check.acceleration_mps2;
+  EXPECT_EQ(good.sweep.least_level_mps2, 0.0);
+  for (const double share : {0.05, 0.2, 0.4}) {
+    settings.level_mps2 = share * least_mps2;
+    SweepRun run(bench);
+    run.to_end(settings);
+    EXPECT_NE(run.sweep.status, Status::kOk);
+    EXPECT_NE(run.sweep.status, Status::kLevelNotReached) << share;
+    // One step of 5 to 10 is what the first look knows the shaker by.
+    EXPECT_NEAR(run.sweep.least_level_mps2 / least_mps2, 1.0, 0.2) << share;
+  }
+}
+
 TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
   double squares = 0.0;
   std::size_t components = 0;

@@ -24,7 +24,7 @@ constexpr FaultWords kFaults[] = {
     {Status::kStuckChannel, "stuck channel: check its converter", scpi::kQuestionableVoltage},
     {Status::kNoReference, "no reference: check its cable", scpi::kQuestionableVoltage},
     {Status::kNoDevice, "no device: check its cable", scpi::kQuestionableVoltage},
-    {Status::kWeakSignal, "weak signal: check amplifier, cables", scpi::kQuestionableVoltage},
+    {Status::kWeakSignal, "weak signal: raise SOUR:LEV, check cables", scpi::kQuestionableVoltage},
     {Status::kLevelNotReached, "level not reached: lower SOUR:LEV", scpi::kQuestionableVoltage},
     {Status::kSwappedChannels, "swapped channels: check cables, gains, DEV:SENS",
      scpi::kQuestionableCalibration},

@@ -47,6 +47,7 @@ void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& sc
   device_v_per_v_ = 0.0;
   activity_ = SweepWorkspace::Activity::kSilence;
   is_lowering_ = false;
+  least_level_mps2_ = 0.0;
 }
 
 Status Sweep::start(const SweepSettings& settings) noexcept {
@@ -90,6 +91,7 @@ void Sweep::reset() noexcept {
   results_.status = Status::kOk;
 }
 
+  results_.least_level_mps2 = 0.0;
 void Sweep::stop() noexcept {
   if (!done()) {
     fail(Status::kStopped);
@@ -102,6 +104,7 @@ void Sweep::fail(Status status) noexcept {
   results_.status = status;
   results_.failed_frequency_hz =
       results_.stage == SweepStage::kSilence ? 0.0 : work_.target_.frequency_hz;
+  results_.least_level_mps2 = has_few_steps() ? work_.least_level_mps2_ : 0.0;
   results_.stage = SweepStage::kFailed;
   finish();
 }

@@ -174,6 +174,9 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   }
   work_.target_.acceleration_mps2 = acceleration;
   work_.drive_per_acceleration_ = per_acceleration;
+  if (drive_v >= few_steps_v()) {
+    work_.least_level_mps2_ = few_steps_v() / per_acceleration;
+  }
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
     return;
   }
@@ -231,10 +234,19 @@ bool Sweep::is_level_little() const noexcept {
   return work_.level_room_mps2_ < results_.settings.level_mps2;
 }
 
+double Sweep::few_steps_v() const noexcept { return kFewSteps * work_.format_.drive_full_scale_v; }
+
+// A drive of few steps of its converter is no sine, and cannot be set to a level; one below a step
+// is nothing at all.
+bool Sweep::has_few_steps() const noexcept {
+  return work_.least_level_mps2_ > 0.0 && work_.drive_.amplitude_v() < few_steps_v();
+}
+
 // A level that full scale has made little is not reached for the converters' steps, and a channel
 // that was too large for its level may not follow the drive.
 void Sweep::fail_at_level() noexcept {
   fail(is_level_little() || work_.target_.was_overrange ? Status::kSaturated
+       : has_few_steps()                                ? Status::kWeakSignal
                                                         : Status::kLevelNotReached);
 }
 
@@ -357,7 +369,7 @@ void Sweep::suspect(Status status) noexcept {
   const bool is_patient = may_ring || status == Status::kDcDrift;
   double drive_v = work_.drive_.amplitude_v();
   if (target.looks >= (is_patient ? kMostLooksAgain : 1)) {
-    fail(status == Status::kDistorted ? distortion_at(drive_v) : status);
+    fail(status == Status::kDistorted ? distortion() : status);
     return;
   }
   ++target.looks;
@@ -372,12 +384,10 @@ void Sweep::suspect(Status status) noexcept {
   drive_to(drive_v);
 }
 
-// A drive of few steps of its converter is no sine: less of it, as for other distortion, would not
-// help.
-Status Sweep::distortion_at(double drive_v) const noexcept {
-  const bool has_few_steps = drive_v < kFewSteps * work_.format_.drive_full_scale_v;
+// Less of a drive of few steps, as for other distortion, would not help.
+Status Sweep::distortion() const noexcept {
   return is_level_little() ? Status::kSaturated
-         : has_few_steps   ? Status::kWeakSignal
+         : has_few_steps() ? Status::kWeakSignal
                            : Status::kDistorted;
 }
 

@@ -106,7 +106,9 @@ class Sweep {
   double offset_change_v(double reference_v, double device_v) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
-  Status distortion_at(double drive_v) const noexcept;
+  Status distortion() const noexcept;
+  double few_steps_v() const noexcept;
+  bool has_few_steps() const noexcept;
   void end_target() noexcept;
   bool is_neighbour() const noexcept;
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;

@@ -50,7 +50,9 @@ struct SweepResults {
   Complex check_before;
   Complex check_after;
   double failed_frequency_hz = 0.0;  ///< Where it failed; 0 in the silence or if it has not.
-  std::uint64_t blocks = 0;          ///< Exchanged so far.
+  /// What a drive of five steps of 12 bits makes, where it failed with fewer; 0 if it did not.
+  double least_level_mps2 = 0.0;
+  std::uint64_t blocks = 0;  ///< Exchanged so far.
   std::size_t point_count = 0;
   SweepStage stage = SweepStage::kIdle;
   bool may_swing = false;  ///< The shaker, after a fault: the next sweep waits for rest first.

@@ -64,6 +64,7 @@ class SweepWorkspace {
   double last_hz_ = 0.0;                 // Its frequency.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
+  double least_level_mps2_ = 0.0;        // Of few steps of the drive; 0 until known.
   double level_room_mps2_ = 0.0;         // What takes a channel to full scale.
   double device_v_per_v_ = 0.0;          // Device's volts per volt of drive, of the one before.
   double first_reference_offset_v_ = 0.0;
