@@ -382,4 +382,29 @@ TEST(Coverage, ChiSquareHoldsWhatTheBudgetStates) {
   EXPECT_LT(sum / dof, 1.0 + 5.0 * std::sqrt(2.0 / dof) + 0.1);
 }
 
+// A device that rings for 40 periods and more at its own frequency, far above most of the sweep's.
+TEST(Coverage, HoldsForDevicesThatRing) {
+  constexpr int kDevices = 8;
+  const emax::sim::Device devices[] = {{1.1, 2110.0, 0.005}, {1.1, 1730.0, 0.002}};
+  for (const emax::sim::Device& device : devices) {
+    Inside inside;
+    for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kDevices; ++seed) {
+      emax::sim::BenchSettings bench;
+      bench.seed = seed;
+      bench.noise_v = 5e-4;
+      bench.device = device;
+      emax::app::SweepSettings stated = emax::app::default_sweep_settings();
+      stated.expected_sensitivity = device.sensitivity;
+      count(fitted(bench, stated), device, inside);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double square = inside.squares[i] / static_cast<double>(kDevices);
+      std::printf("f0 %g Hz, parameter %d: errors %.2f u\n", device.natural_frequency_hz,
+                  static_cast<int>(i), std::sqrt(square));
+      // 0.1 % of chi-square with 8 degrees of freedom are beyond.
+      EXPECT_LT(square, 3.27) << device.natural_frequency_hz << " Hz, parameter " << i;
+    }
+  }
+}
+
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -17,6 +18,9 @@ constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
+constexpr double kRingingTimes = 8.0;    // Time constants of the device: 0.03 % is left.
+constexpr double kLongestRinging_s = 2.0;
+constexpr double kLeastLag = 2e-4;         // Of 1/K: less may be noise.
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
 constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
@@ -288,6 +292,15 @@ void Sweep::foresee_resonance() noexcept {
 }
 
 void Sweep::begin_target(double frequency_hz) noexcept {
+// A device of little damping rings at its own frequency after each change of the drive, wherever
+// that is. Its time constant is mu3/mu2, both from what check and last frequency say of 1/K.
+void Sweep::foresee_ringing() noexcept {
+  const Complex inverse = reciprocal(work_.last_ratio_);
+  const double lag = std::max(inverse.im, kLeastLag * abs(inverse.re));
+  const double times_s = -2.0 * kRingingTimes * inverse_slope() / (kTwoPi * work_.last_hz_ * lag);
+  work_.target_.ringing_s = std::min(std::max(times_s, 0.0), kLongestRinging_s);
+}
+
   SweepWorkspace& work = work_;
   const SweepSettings& settings = results_.settings;
   SweepWorkspace::Target& target = work.target_;
@@ -301,6 +314,9 @@ void Sweep::begin_target(double frequency_hz) noexcept {
     foresee_resonance();
   }
   // Whole periods, to the nearest frame.
+  if (results_.stage != SweepStage::kCheckBefore) {
+    foresee_ringing();
+  }
   const double period = work.format_.sample_rate_hz / frequency_hz;
   const double by_duration = floor(settings.repeat_s * frequency_hz + 0.999999);
   const double by_cycles = static_cast<double>(settings.cycles);
@@ -323,7 +339,8 @@ void Sweep::begin_target(double frequency_hz) noexcept {
 void Sweep::drive_to(double amplitude_v) noexcept {
   const double periods_s = work_.target_.periods / work_.target_.frequency_hz;
   const double settle_s =
-      work_.target_.settle_scale * std::max(results_.settings.settle_s, periods_s);
+      std::max(work_.target_.settle_scale * std::max(results_.settings.settle_s, periods_s),
+               work_.target_.ringing_s);
   work_.settle_left_ = frames_of(settle_s * work_.format_.sample_rate_hz);
   work_.left_ = work_.drive_.go_to(work_.target_.frequency_hz, amplitude_v) +
                 work_.format_.latency_frames + work_.settle_left_ + 1u;

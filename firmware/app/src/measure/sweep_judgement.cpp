@@ -364,7 +364,7 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
 // its share of the drive's harmonics falls with it.
 void Sweep::suspect(Status status) noexcept {
   SweepWorkspace::Target& target = work_.target_;
-  const bool may_ring = status == Status::kDistorted && results_.stage != SweepStage::kCheckBefore;
+  const bool may_ring = status == Status::kDistorted;
   // A second fault within the second look moves the mean, too.
   const bool is_patient = may_ring || status == Status::kDcDrift;
   double drive_v = work_.drive_.amplitude_v();
@@ -376,7 +376,8 @@ void Sweep::suspect(Status status) noexcept {
   if (may_ring) {
     target.settle_scale *= kRingingScale;
     // A level that full scale has made little needs its steps.
-    if (target.looks == kMostLooksAgain && !is_level_little()) {
+    if (target.looks == kMostLooksAgain && !is_level_little() &&
+        results_.stage != SweepStage::kCheckBefore) {
       work_.level_scale_ *= kLookShare;
       drive_v *= kLookShare;
     }
@@ -467,12 +468,17 @@ bool Sweep::has_turned_round(const Complex& ratio, const Complex& before) const 
 Complex Sweep::inverse_expected() const noexcept {
   const Complex before = inverse_of(work_.last_ratio_);
   const double step = work_.target_.frequency_hz / work_.last_hz_;
+  return {before.re + inverse_slope() * (step * step - 1.0), step * before.im};
+}
+
+// Of the real part, over the square of the frequency in units of the last one.
+double Sweep::inverse_slope() const noexcept {
   const double check = results_.settings.check_hz / work_.last_hz_;
   const double base = 1.0 - check * check;
   // Too near one another, they tell no slope.
-  const double slope =
-      abs(base) > kShortestBase ? (before.re - inverse_of(results_.check_before).re) / base : 0.0;
-  return {before.re + slope * (step * step - 1.0), step * before.im};
+  return abs(base) > kShortestBase
+             ? (inverse_of(work_.last_ratio_).re - inverse_of(results_.check_before).re) / base
+             : 0.0;
 }
 
 // Where device and reference give the same volts, exchanged channels have the same ratio, but for

@@ -90,6 +90,7 @@ class Sweep {
   void end_activity() noexcept;
   void end_silence() noexcept;
   void foresee_resonance() noexcept;
+  void foresee_ringing() noexcept;
   void begin_target(double frequency_hz) noexcept;
   void drive_to(double amplitude_v) noexcept;
   void begin_repeat() noexcept;
@@ -112,6 +113,7 @@ class Sweep {
   void end_target() noexcept;
   bool is_neighbour() const noexcept;
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
+  double inverse_slope() const noexcept;
   Complex inverse_expected() const noexcept;
   Status plausibility_of(const Complex& ratio, double noise) const noexcept;
   void store_point(const PointScatter& scatter, const Complex& ratio) noexcept;

@@ -40,6 +40,7 @@ class SweepWorkspace {
     double permitted_v = 0.0;
     double unconfirmed_v = 0.0;  // V/(m/s^2) of the first look that asked for more.
     double periods = 0.0;        // To settle, at least;
+    double ringing_s = 0.0;      // for the device's own frequency;
     double settle_scale = 1.0;   // the time to settle times this.
     // At the first look that was clear: volts per volt of drive, and over the device's.
     double reference_v_per_v = 0.0;
@@ -63,8 +64,8 @@ class SweepWorkspace {
   Complex last_ratio_;                   // Of the frequency before, or the check's.
   double last_hz_ = 0.0;                 // Its frequency.
   double drive_per_acceleration_ = 0.0;  // V/(m/s^2); 0 until known.
-  double level_scale_ = 0.0;             // 1; overrange halves it.
   double least_level_mps2_ = 0.0;        // Of few steps of the drive; 0 until known.
+  double level_scale_ = 0.0;             // 1; overrange halves it.
   double level_room_mps2_ = 0.0;         // What takes a channel to full scale.
   double device_v_per_v_ = 0.0;          // Device's volts per volt of drive, of the one before.
   double first_reference_offset_v_ = 0.0;
