@@ -13,14 +13,15 @@ namespace {
 
 // A shaker that a fault or a stop has left swinging comes to rest.
 constexpr double kRest_s = 2.0;
+constexpr double kMuchScatter = 1e-4;  // Relative, of the mean of a point's repeats.
 constexpr double kHiddenShare = 0.5;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
-constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kRingingTimes = 8.0;    // Time constants of the device: 0.03 % is left.
 constexpr double kLongestRinging_s = 2.0;
 constexpr double kLeastLag = 2e-4;         // Of 1/K: less may be noise.
+constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
 constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
@@ -46,12 +47,12 @@ void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& sc
   device_monitor_ = ChannelMonitor();
   target_ = SweepWorkspace::Target();
   drive_per_acceleration_ = 0.0;
+  least_level_mps2_ = 0.0;
   level_scale_ = 1.0;
   level_room_mps2_ = std::numeric_limits<double>::infinity();
   device_v_per_v_ = 0.0;
   activity_ = SweepWorkspace::Activity::kSilence;
   is_lowering_ = false;
-  least_level_mps2_ = 0.0;
 }
 
 Status Sweep::start(const SweepSettings& settings) noexcept {
@@ -90,12 +91,12 @@ void Sweep::reset() noexcept {
   results_.check_before = Complex();
   results_.check_after = Complex();
   results_.failed_frequency_hz = 0.0;
+  results_.least_level_mps2 = 0.0;
   results_.blocks = 0;
   results_.point_count = 0;
   results_.status = Status::kOk;
 }
 
-  results_.least_level_mps2 = 0.0;
 void Sweep::stop() noexcept {
   if (!done()) {
     fail(Status::kStopped);
@@ -103,12 +104,12 @@ void Sweep::stop() noexcept {
 }
 
 void Sweep::fail(Status status) noexcept {
+  results_.least_level_mps2 = has_few_steps() ? work_.least_level_mps2_ : 0.0;
   (void)stream_.stop();
   results_.may_swing = results_.may_swing || results_.blocks > 0;
   results_.status = status;
   results_.failed_frequency_hz =
       results_.stage == SweepStage::kSilence ? 0.0 : work_.target_.frequency_hz;
-  results_.least_level_mps2 = has_few_steps() ? work_.least_level_mps2_ : 0.0;
   results_.stage = SweepStage::kFailed;
   finish();
 }
@@ -291,7 +292,6 @@ void Sweep::foresee_resonance() noexcept {
                                     kLeastRoom * results_.settings.level_mps2);
 }
 
-void Sweep::begin_target(double frequency_hz) noexcept {
 // A device of little damping rings at its own frequency after each change of the drive, wherever
 // that is. Its time constant is mu3/mu2, both from what check and last frequency say of 1/K.
 void Sweep::foresee_ringing() noexcept {
@@ -301,6 +301,7 @@ void Sweep::foresee_ringing() noexcept {
   work_.target_.ringing_s = std::min(std::max(times_s, 0.0), kLongestRinging_s);
 }
 
+void Sweep::begin_target(double frequency_hz) noexcept {
   SweepWorkspace& work = work_;
   const SweepSettings& settings = results_.settings;
   SweepWorkspace::Target& target = work.target_;
@@ -313,10 +314,10 @@ void Sweep::foresee_ringing() noexcept {
   if (results_.stage == SweepStage::kPoints) {
     foresee_resonance();
   }
-  // Whole periods, to the nearest frame.
   if (results_.stage != SweepStage::kCheckBefore) {
     foresee_ringing();
   }
+  // Whole periods, to the nearest frame.
   const double period = work.format_.sample_rate_hz / frequency_hz;
   const double by_duration = floor(settings.repeat_s * frequency_hz + 0.999999);
   const double by_cycles = static_cast<double>(settings.cycles);
@@ -392,8 +393,10 @@ void Sweep::finish() noexcept {
         point_verdict(work.scatter_[i], point.point.frequency_hz, results.noise, inputs);
     point.budget = verdict.budget;
     point.residual_percent = static_cast<float>(verdict.residual_percent);
-    point.flagged = point.flagged || verdict.scatters || verdict.budget.hum > kMuchHum;
-    point.scatters = verdict.scatters;
+    // What the shaker still swings by is beyond chance where there is no noise; the point's
+    // uncertainty has it, and little of it is not worth a look.
+    point.scatters = verdict.scatters && verdict.budget.noise > kMuchScatter;
+    point.flagged = point.flagged || point.scatters || verdict.budget.hum > kMuchHum;
     point.point.u_amplitude = verdict.relative_u * point.point.amplitude;
     point.point.u_phase_rad = verdict.relative_u;
   }
