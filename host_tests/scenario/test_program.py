@@ -652,6 +652,11 @@ class Bench(ProgramTest):
             self.assertIn("of 50 Hz)", report)
         self.assertNotIn("Without the point", self.succeed("report", *QUICK))
 
+    def test_tables_of_the_reference_that_the_bench_does_not_have(self):
+        self.refuse(["report", "--reference-table", "10,0.1,1000,0.1,6000,0.11"], "emax: --reference-table: ",
+                    "the reference of the simulated bench has one at all frequencies")
+        self.succeed("report", *QUICK, "--reference-table", "10,0.1,6000,0.1004")
+
     def test_fault_after_the_end_is_none(self):
         expected = self.succeed("report", *QUICK)
         result = self.run_program("report", *QUICK, "--bench-fault", "dc-drift@1000")

@@ -97,9 +97,35 @@ app::SettingsError check_settings(const ReportOptions& options) {
              : error;
 }
 
+// The reference on the simulated bench is as sensitive at all frequencies.
+bool contradicts_bench(const ReportOptions& options) noexcept {
+  constexpr double kPercent = 100.0;
+  const app::ReferenceCalibration& reference = options.sweep.reference;
+  bool differs = false;
+  for (std::size_t i = 0; i < reference.count; ++i) {
+    const double off = reference.sensitivity[i] / options.bench.reference_sensitivity - 1.0;
+    differs = differs || !(kPercent * emax::abs(off) <= options.reference_uncertainty_percent);
+  }
+  return differs && options.measures() && options.instrument.empty();
+}
+
+Problem check_reference_table(const Given& given, const ReportOptions& options) {
+  return contradicts_bench(options)
+             ? wrong_value(given,
+                           "sensitivities that differ from that at the check frequency by "
+                           "--reference-uncertainty at most: the reference of the simulated bench "
+                           "has one at all frequencies")
+             : Problem{};
+}
+
 Problem check_settings(const std::vector<Given>& all, ReportOptions& options) {
   const app::SettingsError error = check_settings(options);
   if (error.setting == nullptr) {
+    for (const Given& given : all) {
+      if (given.option->name == "reference-table") {
+        return check_reference_table(given, options);
+      }
+    }
     return {};
   }
   const std::string name(option_of_setting(error.setting));
