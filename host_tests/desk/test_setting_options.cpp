@@ -98,6 +98,8 @@ TEST(SettingOptions, ErrorsOfSettingsLeadToTheirOptions) {
   EXPECT_EQ(emax::desk::option_of_setting("acceleration limit"), "acceleration-limit");
   EXPECT_EQ(emax::desk::option_of_setting("limit"), "limit");
   EXPECT_EQ(emax::desk::option_of_setting("repeats"), "repeats");
+  EXPECT_EQ(emax::desk::option_of_setting("reference gain uncertainty"), "reference-gain");
+  EXPECT_EQ(emax::desk::option_of_setting("skew uncertainty"), "correction-skew");
 }
 
 TEST(SettingOptions, AValueAndItsUncertainty) {

@@ -657,6 +657,10 @@ class Bench(ProgramTest):
                     "the reference of the simulated bench has one at all frequencies")
         self.succeed("report", *QUICK, "--reference-table", "10,0.1,6000,0.1004")
 
+    def test_an_uncertainty_behind_its_value_is_named_by_its_option(self):
+        self.refuse(["report", "--reference-gain", "10,-1"], 'emax: --reference-gain: "10,-1" given; expected 0 to 50 percent')
+        self.refuse(["report", "--correction-skew", "1e-6,1"], "emax: --correction-skew: ")
+
     def test_fault_after_the_end_is_none(self):
         expected = self.succeed("report", *QUICK)
         result = self.run_program("report", *QUICK, "--bench-fault", "dc-drift@1000")

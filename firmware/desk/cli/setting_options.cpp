@@ -171,12 +171,16 @@ std::vector<Option> options_of(const SettingRow (&rows)[kRows], const void* defa
   return options;
 }
 
+// An uncertainty is given behind its value, by the option of the row before it.
 template <std::size_t kRows>
 const char* option_in(const SettingRow (&rows)[kRows], std::string_view setting) noexcept {
+  const char* before = nullptr;
   for (const SettingRow& row : rows) {
-    if (setting == row.field.name && row.option.name != nullptr) {
-      return row.option.name;
+    const char* option = row.option.name != nullptr ? row.option.name : before;
+    if (setting == row.field.name && option != nullptr) {
+      return option;
     }
+    before = row.command.next_unit != nullptr ? row.option.name : nullptr;
   }
   return nullptr;
 }
