@@ -70,7 +70,7 @@ TEST(ScpiSession, PathsThatLeadNowhere) {
       {"*ABC", "-113,\"Undefined header;*ABC\"\n"},
       {"CALC", "-113,\"Undefined header;CALC\"\n"},
       {"ROUT:CHAN2:CLOS", "-114,\"Header suffix out of range;ROUT:CHAN2:CLOS\"\n"},
-      {"STAT2:PRES", "-113,\"Undefined header;STAT2:PRES\"\n"},
+      {"STAT2:PRES", "-114,\"Header suffix out of range;STAT2:PRES\"\n"},
       {"*ESE", "-109,\"Missing parameter;*ESE\"\n"},
       {"::ABOR", "-110,\"Command header error;::ABOR\"\n"},
       {"*ESE,5", "-111,\"Header separator error;*ESE,5\"\n"},

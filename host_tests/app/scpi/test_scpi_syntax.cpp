@@ -29,7 +29,7 @@ TEST(ScpiPattern, ShortAndLongForm) {
   }
   for (const char* header :
        {"CALCU:FILT:ORD", "CALC:FILT:ORDE", "CALC:FILT", "CALC:FILT:ORD:X", "CAL:FILT:ORD", "CALC",
-        "FILT:ORD", "CALC:ORD", "CALC:FILT:ORD1", "CALC2:FILT:ORD"}) {
+        "FILT:ORD", "CALC:ORD", "CALC:FILT:ORDE1", "CAL1:FILT:ORD"}) {
     EXPECT_EQ(match("CALCulate:FILTer:ORDer", header), HeaderMatch::kNo) << header;
   }
 }
@@ -74,6 +74,12 @@ TEST(ScpiPattern, NumericSuffix) {
     EXPECT_EQ(match(pattern, header), HeaderMatch::kSuffixOutOfRange) << header;
   }
   EXPECT_EQ(match(pattern, "ROUT:CHA1:CLOS"), HeaderMatch::kNo);
+  // 1 is what is meant where no number is told.
+  EXPECT_EQ(match("[SENSe:]SWEep:FREQuency", "SENS1:SWE1:FREQ1"), HeaderMatch::kYes);
+  EXPECT_EQ(match("[SENSe:]SWEep:FREQuency", "SWE1:FREQ"), HeaderMatch::kYes);
+  EXPECT_EQ(match("[SENSe:]SWEep:FREQuency", "SENS2:SWE:FREQ"), HeaderMatch::kSuffixOutOfRange);
+  EXPECT_EQ(match("[SENSe:]SWEep:FREQuency", "SENS01:SWE:FREQ"), HeaderMatch::kSuffixOutOfRange);
+  EXPECT_EQ(match("*RST", "*RST1"), HeaderMatch::kNo);
   EXPECT_EQ(match(pattern, "ROUT:CHAN2"), HeaderMatch::kNo);
 }
 

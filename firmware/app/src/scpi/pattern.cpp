@@ -30,6 +30,8 @@ bool is_same(const char* pattern, const PatternNode& node, const char* other,
   return true;
 }
 
+// Without a number, 1 is meant (SCPI-99, volume 1, 6.2.5.2), so a 1 says the same everywhere, but
+// in common commands.
 HeaderMatch match_mnemonic(const char* pattern, const PatternNode& node,
                            Span<const char> mnemonic) noexcept {
   const char* name = pattern + node.begin;
@@ -40,7 +42,7 @@ HeaderMatch match_mnemonic(const char* pattern, const PatternNode& node,
   while (length > 0 && is_digit(mnemonic[length - 1])) {
     --length;
   }
-  if (!node.has_suffix || length == mnemonic.size() ||
+  if (length == mnemonic.size() || name[0] == '*' ||
       !matches_word(name, node.length, mnemonic.first(length))) {
     return HeaderMatch::kNo;
   }

@@ -17,7 +17,6 @@ struct PatternNode {
   std::size_t length = 0;  ///< 0 past the last one.
   std::size_t next = 0;    ///< Where the next node is looked for.
   bool is_optional = false;
-  bool has_suffix = false;  ///< "[1]" follows: a 1 may stand after the mnemonic.
 };
 
 /// @param[in] pattern  Ends with a zero.
@@ -34,7 +33,6 @@ constexpr PatternNode next_node(const char* pattern, std::size_t position) noexc
   }
   node.length = i - node.begin;
   if (pattern[i] == '[' && pattern[i + 1] == '1' && pattern[i + 2] == ']') {
-    node.has_suffix = true;
     i += 3;
   }
   node.next = i;
