@@ -158,6 +158,12 @@ class ScpiFaults(ProgramTest):
         self.assertRegex(done.stdout.decode(), r'^1;-240,"Hardware error;[a-z ]+: [^"]+";0,"No error"\n$')
 
 
+    def test_that_have_not_struck_are_told_beside_the_answers(self) -> None:
+        done = run("--bench-fault", "gain-step@1000", text=b"INIT;*OPC?\nINIT;*OPC?\n")
+        self.assertEqual(done.stdout, b"1\n1\n")
+        self.assert_one_line(done.stderr, "gain-step did not strike: the sweep has ended after ")
+
+
 class ScpiStore(ProgramTest):
     def test_a_file_keeps_settings_and_the_last_identification(self) -> None:
         store = ["--store", str(self.directory / "store")]

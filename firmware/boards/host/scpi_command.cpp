@@ -16,6 +16,7 @@
 #include "console_port.hpp"
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
+#include "desk/report/unstruck_faults.hpp"
 #include "desk/scpi/command_list.hpp"
 #include "desk/scpi/scpi_options.hpp"
 #include "file_store.hpp"
@@ -116,6 +117,7 @@ class ScpiJob final {
       } else {
         instrument.poll();
       }
+      tell_unstruck(instrument.is_sweeping());
       if (!goes_on(instrument)) {
         instrument.abort();
         return {};
@@ -144,6 +146,18 @@ class ScpiJob final {
     port_.wait(is_resting ? longest : Microseconds{0}, wishes);
   }
 
+  // Once, at the end of the first sweep: answers have no place for it.
+  void tell_unstruck(bool is_sweeping) {
+    if (was_sweeping_ && !is_sweeping && !is_told_) {
+      const std::string words = desk::words_of_unstruck(bench_);
+      if (!words.empty()) {
+        std::fprintf(stderr, "emax: %s\n", words.c_str());
+      }
+      is_told_ = true;
+    }
+    was_sweeping_ = is_sweeping;
+  }
+
   desk::Problem stop(app::Instrument& instrument) {
     const bool was_sweeping = instrument.is_sweeping();
     instrument.abort();
@@ -164,6 +178,8 @@ class ScpiJob final {
   VolatileBytes volatile_bytes_;
   FileBytes file_bytes_;
   FileStore store_;
+  bool was_sweeping_ = false;
+  bool is_told_ = false;
 };
 
 desk::Problem run_on_tcp(const desk::ScpiOptions& options) {

@@ -9,6 +9,7 @@
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
+#include "desk/report/unstruck_faults.hpp"
 
 namespace emax::desk {
 
@@ -49,7 +50,6 @@ std::string in_line(std::string sentence) {
   return sentence;
 }
 
-}  // namespace
 // With what an option can do about it.
 std::string words_on(const app::SweepResults& sweep) {
   const double least_mps2 = sweep.least_level_mps2;
@@ -75,6 +75,7 @@ std::string words_on(const app::SweepResults& sweep) {
          ", and the drive has fewer: expected at least that for --level";
 }
 
+}  // namespace
 
 Problem BenchJob::start(const ReportOptions& options) {
   options_ = &options;
@@ -161,19 +162,8 @@ Problem BenchJob::unstruck() const {
   if (is_remote_ || !has_measured()) {
     return {};
   }
-  std::string names;
-  for (const sim::Fault& fault : {bench_.settings().fault, bench_.settings().second_fault}) {
-    if (fault.kind != sim::FaultKind::kNone && fault.at_frame >= bench_.clock_frames()) {
-      names += (names.empty() ? "" : " and ") + std::string(sim::name_of(fault.kind));
-    }
-  }
-  if (names.empty()) {
-    return {};
-  }
-  char end_s[32];
-  (void)std::snprintf(end_s, sizeof end_s, "%.3f", bench_.now_s());
-  return {ExitStatus::kDone, names + " did not strike: the sweep has ended after " + end_s +
-                                 " s; give an earlier time to --bench-fault"};
+  const std::string words = words_of_unstruck(bench_);
+  return words.empty() ? Problem{} : Problem{ExitStatus::kDone, words};
 }
 
 Problem BenchJob::stop() {
