@@ -30,26 +30,31 @@ bool factor(const ComplexCovariance& c, ComplexCholesky& l) noexcept {
   return l.re_re > 0.0 && l.im_im > 0.0 && is_finite(l.re_re) && is_finite(l.im_im);
 }
 
-// Rotates one row with its right-hand side into the triangle; the row ends as zeros.
-template <std::size_t kSize>
-void rotate_in(double (&r)[kSize][kSize], double (&rhs)[kSize], double (&row)[kSize],
-               double value) noexcept {
-  for (std::size_t k = 0; k < kSize; ++k) {
+// Rotates one row with its right-hand side into the triangle of `size` rows; the row ends as zeros.
+void rotate_into(double* r, double* rhs, double* row, std::size_t size, double value) noexcept {
+  for (std::size_t k = 0; k < size; ++k) {
+    double* upper_row = r + k * size;
     if (row[k] == 0.0) {
       continue;
     }
-    const double length = sqrt(r[k][k] * r[k][k] + row[k] * row[k]);
-    const double c = r[k][k] / length;
+    const double length = sqrt(upper_row[k] * upper_row[k] + row[k] * row[k]);
+    const double c = upper_row[k] / length;
     const double s = row[k] / length;
-    for (std::size_t i = k; i < kSize; ++i) {
-      const double upper = r[k][i];
-      r[k][i] = c * upper + s * row[i];
+    for (std::size_t i = k; i < size; ++i) {
+      const double upper = upper_row[i];
+      upper_row[i] = c * upper + s * row[i];
       row[i] = c * row[i] - s * upper;
     }
     const double upper = rhs[k];
     rhs[k] = c * upper + s * value;
     value = c * value - s * upper;
   }
+}
+
+template <std::size_t kSize>
+void rotate_in(double (&r)[kSize][kSize], double (&rhs)[kSize], double (&row)[kSize],
+               double value) noexcept {
+  rotate_into(&r[0][0], rhs, row, kSize, value);
 }
 
 void solve_upper(const double (&r)[3][3], double (&x)[3]) noexcept {
@@ -145,6 +150,11 @@ Status Wlsp::load(const FrequencyResponse& response) noexcept {
   response_ = response;
   has_common_ = response.has_common();
   max_frequency_hz_ = response_.points()[response_.size() - 1].frequency_hz;
+  largest_amplitude_ = 0.0;
+  for (const ResponsePoint& point : response_.points()) {
+    largest_amplitude_ =
+        point.amplitude > largest_amplitude_ ? point.amplitude : largest_amplitude_;
+  }
   held_damping_ = 0.0;
   fit_ = WlspFit();
   return Status::kOk;
@@ -465,12 +475,12 @@ double Wlsp::place_of(std::size_t index) const noexcept {
 
 // Of 1/K of the fit at a point, by the effect in the size of its uncertainty. An error of the
 // amplitude changes 1/K by as much of it, one of the phase turns it.
-Complex Wlsp::change_of(Effect effect, std::size_t index, double largest) const noexcept {
+Complex Wlsp::change_of(Effect effect, std::size_t index) const noexcept {
   const SharedEffects& shared = response_.shared();
   const ResponsePoint& point = response_.points()[index];
   const double w = point.frequency_hz / max_frequency_hz_;
-  const Complex y = {scaled_[0] - w * w * scaled_[2], 2.0 * w * scaled_[1]};
-  const double share = point.amplitude / largest;
+  const Complex y = inverse_at(index, scaled_);
+  const double share = point.amplitude / largest_amplitude_;
   const double angle = kTwoPi * point.frequency_hz * shared.skew_s;
   switch (effect) {
     case Effect::kSkew:
@@ -506,7 +516,7 @@ void Wlsp::add_to(NormalStep& step, std::size_t index, const Complex& change) co
   }
 }
 
-// x becomes the change of the scaled mu.
+// x becomes the change of the scaled mu, common_z that of the common effect.
 void Wlsp::solve_step(NormalStep& step) const noexcept {
   if (has_common_) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -515,16 +525,25 @@ void Wlsp::solve_step(NormalStep& step) const noexcept {
   }
   solve_transposed(r_, step.x);
   solve_upper(r_, step.x);
+  for (std::size_t k = 0; k < 3; ++k) {
+    step.common_z -= step.columns_common[k] * step.x[k];
+  }
+  step.common_z = has_common_ ? step.common_z / common_squares_ : 0.0;
 }
 
-// What the change makes of the estimates, with the weights of the fit: one step of its normal
-// equations.
-void Wlsp::add_effect(Effect effect, double largest, double (&covariance)[3][3]) const noexcept {
+// What the effect makes of the scaled mu and of the common effect, with the weights of the fit: one
+// step of its normal equations.
+Wlsp::NormalStep Wlsp::step_of(Effect effect) const noexcept {
   NormalStep step;
   for (std::size_t i = 0; i < response_.size(); ++i) {
-    add_to(step, i, change_of(effect, i, largest));
+    add_to(step, i, change_of(effect, i));
   }
   solve_step(step);
+  return step;
+}
+
+void Wlsp::add_effect(Effect effect, double (&covariance)[3][3]) const noexcept {
+  const NormalStep step = step_of(effect);
   const double* x = step.x;
   const double d0 = x[0] / scaled_[0];
   const double d2 = x[2] / scaled_[2];
@@ -538,54 +557,38 @@ void Wlsp::add_effect(Effect effect, double largest, double (&covariance)[3][3])
   }
 }
 
-double Wlsp::largest_amplitude() const noexcept {
-  double largest = 0.0;
-  for (const ResponsePoint& point : response_.points()) {
-    largest = point.amplitude > largest ? point.amplitude : largest;
-  }
-  return largest;
-}
-
 // The points' own uncertainties know of drift, images and skew, not of leak and linearity. What no
 // change of the parameters takes up of those stays in the residuals. Each is one number of a
 // standard normal distribution, the same at all points: chi-square is judged at those numbers that
 // make it least, which is chi-square with the whole covariance.
 void Wlsp::explain_by_shared() noexcept {
-  explained_ = Explained();
+  is_explained_ = false;
+  explained_ = {};
   const SharedEffects& shared = response_.shared();
   if (!(shared.leak + shared.leak_back + shared.linearity > 0.0)) {
     return;
   }
-  Explained parts[kExplained];
+  Explained parts[kExplained] = {};
   double r[kExplained][kExplained] = {};
   double rhs[kExplained] = {};
-  double row[kExplained] = {};
+  double rows[2][kExplained] = {};
   for (std::size_t k = 0; k < kExplained; ++k) {
-    NormalStep step;
+    const NormalStep step = step_of(explained_by(k));
+    parts[k] = {{}, {step.x[0], step.x[1], step.x[2]}, step.common_z};
     parts[k].size[k] = 1.0;
-    for (std::size_t i = 0; i < response_.size(); ++i) {
-      add_to(step, i, effect_at(parts[k], i));
-    }
-    solve_step(step);
-    for (std::size_t j = 0; j < 3; ++j) {
-      parts[k].x[j] = step.x[j];
-      step.common_z -= step.columns_common[j] * step.x[j];
-    }
-    parts[k].common = has_common_ ? step.common_z / common_squares_ : 0.0;
     r[k][k] = 1.0;
-    row[k] = parts[k].common;
+    rows[0][k] = parts[k].common;
   }
-  rotate_in(r, rhs, row, fit_.common_effect);
+  rotate_in(r, rhs, rows[0], fit_.common_effect);
   for (std::size_t i = 0; i < response_.size(); ++i) {
-    double imaginary[kExplained] = {};
     for (std::size_t k = 0; k < kExplained; ++k) {
       const Complex left = left_over(parts[k], i);
-      row[k] = left.re;
-      imaginary[k] = left.im;
+      rows[0][k] = left.re;
+      rows[1][k] = left.im;
     }
     const Complex residual = normalised_residual(i);
-    rotate_in(r, rhs, row, residual.re);
-    rotate_in(r, rhs, imaginary, residual.im);
+    rotate_in(r, rhs, rows[0], residual.re);
+    rotate_in(r, rhs, rows[1], residual.im);
   }
   solve_upper(r, rhs);
   for (std::size_t k = 0; k < kExplained; ++k) {
@@ -595,37 +598,26 @@ void Wlsp::explain_by_shared() noexcept {
       explained_.x[j] += rhs[k] * parts[k].x[j];
     }
   }
+  is_explained_ = true;
 }
 
-// Of 1/K, by leak and linearity of these sizes.
-Complex Wlsp::effect_at(const Explained& explained, std::size_t index) const noexcept {
-  const double largest = largest_amplitude();
-  Complex sum;
-  for (std::size_t k = 0; k < kExplained; ++k) {
-    const auto effect = static_cast<Effect>(static_cast<std::size_t>(Effect::kLeak) + k);
-    sum = sum + explained.size[k] * change_of(effect, index, largest);
-  }
-  return sum;
-}
-
-// Whitened: what parameters and common part do not take up of it.
+// Whitened: what parameters and common part do not take up of leak and linearity of these sizes.
 Complex Wlsp::left_over(const Explained& explained, std::size_t index) const noexcept {
-  Complex left = whiten(index, effect_at(explained, index));
-  const Columns a = whitened_columns(index);
-  for (std::size_t k = 0; k < 3; ++k) {
-    left = left - explained.x[k] * a.column[k];
+  Complex change;
+  for (std::size_t k = 0; k < kExplained; ++k) {
+    change = change + explained.size[k] * change_of(explained_by(k), index);
   }
-  return has_common_ ? left - explained.common * whitened_common(index) : left;
+  change = whiten(index, change - inverse_at(index, explained.x));
+  return without_common(index, change, explained.common);
 }
 
 void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
   const SharedEffects& shared = response_.shared();
-  const double largest = largest_amplitude();
   const double sizes[] = {shared.skew_s, shared.drift,     shared.images,
                           shared.leak,   shared.leak_back, shared.linearity};
   for (std::size_t k = 0; k < 6; ++k) {
     if (sizes[k] > 0.0) {
-      add_effect(static_cast<Effect>(k), largest, covariance);
+      add_effect(static_cast<Effect>(k), covariance);
     }
   }
   const double f0_u = max_frequency_hz_ * sqrt(abs(scaled_[0] / scaled_[2])) * shared.clock;
@@ -644,10 +636,19 @@ Wlsp::Columns Wlsp::whitened_columns(std::size_t index) const noexcept {
 }
 
 Complex Wlsp::whitened_common(std::size_t index) const noexcept {
+  return whiten(index, -response_.common()[index] * inverse_at(index, first_scaled_));
+}
+
+// Out of line, for their size, as the next one.
+[[gnu::noinline]] Complex Wlsp::without_common(std::size_t index, const Complex& value,
+                                               double effect) const noexcept {
+  return has_common_ ? value - effect * whitened_common(index) : value;
+}
+
+[[gnu::noinline]] Complex Wlsp::inverse_at(std::size_t index,
+                                           const double (&scaled)[3]) const noexcept {
   const double w = response_.points()[index].frequency_hz / max_frequency_hz_;
-  const Complex modelled = {first_scaled_[0] - w * w * first_scaled_[2],
-                            2.0 * w * first_scaled_[1]};
-  return whiten(index, -response_.common()[index] * modelled);
+  return {scaled[0] - w * w * scaled[2], 2.0 * w * scaled[1]};
 }
 
 double Wlsp::common_effect_of(const double (&scaled)[3]) const noexcept {
@@ -665,10 +666,7 @@ double Wlsp::common_effect_of(const double (&scaled)[3]) const noexcept {
 }
 
 Complex Wlsp::whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept {
-  const ResponsePoint& point = response_.points()[index];
-  const double w = point.frequency_hz / max_frequency_hz_;
-  const Complex model = {scaled[0] - w * w * scaled[2], 2.0 * w * scaled[1]};
-  return whiten(index, inverse_response(point) - model);
+  return whiten(index, inverse_response(response_.points()[index]) - inverse_at(index, scaled));
 }
 
 double Wlsp::chi_square_of_scaled(const double (&scaled)[3], double common_effect) const noexcept {
@@ -685,13 +683,8 @@ double Wlsp::chi_square_of_scaled(const double (&scaled)[3], double common_effec
 
 Complex Wlsp::explained_residual(std::size_t index, const double (&scaled)[3],
                                  double common_effect) const noexcept {
-  Complex residual = whitened_residual(index, scaled);
-  if (has_common_) {
-    residual = residual - common_effect * whitened_common(index);
-  }
-  const bool is_explained =
-      norm(Complex{explained_.size[0], explained_.size[1]}) + abs(explained_.size[2]) > 0.0;
-  return is_explained ? residual - left_over(explained_, index) : residual;
+  const Complex residual = without_common(index, whitened_residual(index, scaled), common_effect);
+  return is_explained_ ? residual - left_over(explained_, index) : residual;
 }
 
 Complex Wlsp::normalised_residual(std::size_t index) const noexcept {

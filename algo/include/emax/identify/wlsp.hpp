@@ -145,6 +145,9 @@ class Wlsp {
   bool triangularise(double (&rhs)[3]) noexcept;
   bool triangularise_with_common(double (&rhs)[3]) noexcept;
   Complex whitened_common(std::size_t index) const noexcept;
+  Complex without_common(std::size_t index, const Complex& value, double effect) const noexcept;
+  /// 1/K of these scaled mu.
+  Complex inverse_at(std::size_t index, const double (&scaled)[3]) const noexcept;
   double common_effect_of(const double (&scaled)[3]) const noexcept;
   bool fill_estimates() noexcept;
   enum class Effect : std::uint8_t { kSkew, kDrift, kImages, kLeak, kLeakBack, kLinearity };
@@ -157,8 +160,9 @@ class Wlsp {
   void add_to(NormalStep& step, std::size_t index, const Complex& change) const noexcept;
   void solve_step(NormalStep& step) const noexcept;
   double place_of(std::size_t index) const noexcept;
-  Complex change_of(Effect effect, std::size_t index, double largest) const noexcept;
-  void add_effect(Effect effect, double largest, double (&covariance)[3][3]) const noexcept;
+  Complex change_of(Effect effect, std::size_t index) const noexcept;
+  NormalStep step_of(Effect effect) const noexcept;
+  void add_effect(Effect effect, double (&covariance)[3][3]) const noexcept;
   void add_shared(double (&covariance)[3][3]) const noexcept;
   Complex whiten(std::size_t index, const Complex& value) const noexcept;
   Columns whitened_columns(std::size_t index) const noexcept;
@@ -167,13 +171,14 @@ class Wlsp {
   /// effect take up of them.
   static constexpr std::size_t kExplained = 3;
   struct Explained {
-    double size[kExplained] = {};
-    double x[3] = {};
-    double common = 0.0;
+    double size[kExplained];
+    double x[3];
+    double common;
   };
-  double largest_amplitude() const noexcept;
+  static constexpr Effect explained_by(std::size_t k) noexcept {
+    return static_cast<Effect>(static_cast<std::size_t>(Effect::kLeak) + k);
+  }
   void explain_by_shared() noexcept;
-  Complex effect_at(const Explained& explained, std::size_t index) const noexcept;
   Complex left_over(const Explained& explained, std::size_t index) const noexcept;
   Complex explained_residual(std::size_t index, const double (&scaled)[3],
                              double common_effect) const noexcept;
@@ -185,7 +190,8 @@ class Wlsp {
   double r_[3][3] = {};    // Upper triangular factor of the whitened, scaled equations.
   double scaled_[3] = {};  // mu in units of the scaled frequency: mu1, mu2 w_max, mu3 w_max^2.
   double first_scaled_[3] = {};  // The same of the fit without the common part.
-  Explained explained_;
+  Explained explained_ = {};
+  double largest_amplitude_ = 0.0;
   double common_squares_ = 0.0;  // 1 + sum of the squares of the whitened common vector.
   double given_damping_ = 0.0;
   double damping2_ = 0.0;  // By magnitudes alone, with its uncertainty.
@@ -194,6 +200,7 @@ class Wlsp {
   double hold_[3] = {};            // The equation that holds it: hold_ times scaled mu is 0.
   bool is_damping_given_ = false;  // The one that is held.
   bool has_common_ = false;
+  bool is_explained_ = false;  // By some leak or linearity.
   WlspFit fit_;
 };
 
