@@ -32,8 +32,8 @@ const char* words_of_contradiction(Warning warning) noexcept {
     return "a fault has ended the sweep: the points before it are used";
   }
   if (warning == Warning::kChange) {
-    return "the check's ratio has changed: a gain was switched, hum is near, or a cable or "
-           "mounting is loose";
+    return "the check's ratio has changed: a gain was switched, or a cable or mounting is loose, "
+           "or hum is near";
   }
   return "the device is 20 % or more off its data sheet: check gains and reference set";
 }
