@@ -6,7 +6,6 @@
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
-#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -18,9 +17,6 @@ constexpr double kHiddenShare = 0.5;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
-constexpr double kRingingTimes = 8.0;    // Time constants of the device: 0.03 % is left.
-constexpr double kLongestRinging_s = 2.0;
-constexpr double kLeastLag = 2e-4;         // Of 1/K: less may be noise.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
 constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
@@ -290,15 +286,6 @@ void Sweep::foresee_resonance() noexcept {
   const double device_v = work_.scales_.device_v * ratio_factor() * share / sqrt(flat2);
   work_.level_room_mps2_ = std::max(acceleration_of(std::min(work_.scales_.reference_v, device_v)),
                                     kLeastRoom * results_.settings.level_mps2);
-}
-
-// A device of little damping rings at its own frequency after each change of the drive, wherever
-// that is. Its time constant is mu3/mu2, both from what check and last frequency say of 1/K.
-void Sweep::foresee_ringing() noexcept {
-  const Complex inverse = reciprocal(work_.last_ratio_);
-  const double lag = std::max(inverse.im, kLeastLag * abs(inverse.re));
-  const double times_s = -2.0 * kRingingTimes * inverse_slope() / (kTwoPi * work_.last_hz_ * lag);
-  work_.target_.ringing_s = std::min(std::max(times_s, 0.0), kLongestRinging_s);
 }
 
 void Sweep::begin_target(double frequency_hz) noexcept {

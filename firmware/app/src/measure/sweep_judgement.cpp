@@ -31,10 +31,14 @@ constexpr double kLookShare = 0.25;           // and of the drive, for the last.
 constexpr double kMostHum = 0.1;              // Of the ratio, at a point,
 constexpr double kMostHumOfCheck = 0.02;      // and at the check, which others are judged by.
 constexpr double kSwappedShare = 0.16;        // Of the squares of the distances to both.
-constexpr double kAlike = 0.02;               // Distance to the expected ratio that says nothing.
+constexpr double kAlike2 = 4e-4;              // Square of a distance that says nothing: 2 %.
 constexpr double kForeseen = 0.09;            // Square of a share of the 1/K that is expected,
 constexpr double kShortestBase = 0.1;         // Of the square of the frequency, for a slope.
 constexpr double kForeseenFlat = 1e-4;        // and of that at the check frequency.
+
+constexpr double kRingingTimes = 12.0;  // Time constants of the device: 6e-6 is left.
+constexpr double kLongestRinging_s = 3.0;
+constexpr double kLeastLag = 2e-4;  // Of 1/K: less may be noise.
 
 // A device of second order never leads. Sensors with a high pass do, by less than a degree where
 // it matters; a skew that was set wrong by 1 us adds to it.
@@ -481,6 +485,15 @@ double Sweep::inverse_slope() const noexcept {
              : 0.0;
 }
 
+// A device of little damping rings at its own frequency after each change of the drive, wherever
+// that is. Its time constant is mu3/mu2, both from what check and last frequency say of 1/K.
+void Sweep::foresee_ringing() noexcept {
+  const Complex inverse = inverse_of(work_.last_ratio_);
+  const double lag = abs(inverse.im) + kLeastLag * abs(inverse.re);
+  const double times_s = -2.0 * kRingingTimes * inverse_slope() / (kTwoPi * work_.last_hz_ * lag);
+  work_.target_.ringing_s = times_s < kLongestRinging_s ? times_s : kLongestRinging_s;
+}
+
 // Where device and reference give the same volts, exchanged channels have the same ratio, but for
 // the phase: there it is noise that chooses between the two, and a resonance shows them apart.
 Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept {
@@ -515,7 +528,7 @@ Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept
   if (is_check) {
     // The check frequency is far below the resonance, where the lag is small.
     is_wrong = phase < -0.5 * kPi;
-  } else if (to_expected2 > (noise + kAlike) * (noise + kAlike) * expected2) {
+  } else if (to_expected2 > (noise * noise + kAlike2) * expected2) {
     // Distances relative to both, so that beside a resonance a small ratio is not near its inverse.
     const double near2 = kSwappedShare * to_expected2 * factor * factor;
     is_wrong = distance2(ratio, swapped) * expected2 < near2 ||
