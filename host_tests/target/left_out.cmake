@@ -38,6 +38,9 @@ emax_leave_out(test_sweep_faults
   SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
   SweepFaults.AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration)
 emax_leave_out(test_sweep
+  Sweep.ALevelOfFewStepsIsNamedWithTheLeastLevel
+  Sweep.AQuietBenchHasNoFlags
+  Sweep.ExchangedChannelsAreNotSeenInNoise
   Sweep.SharpResonancesAreMeasured
   Sweep.ResonanceThatIsTooSharpIsNamed)
 emax_leave_out(test_evaluation_figures
@@ -47,6 +50,9 @@ emax_leave_out(test_evaluation_figures
 emax_leave_out(test_instrument_work InstrumentSweep.BeginsAnewRightAfterAnAbort)
 emax_leave_out(test_loopback
   Loopback.FindsRatioAndSkewWithinWhatItStates
+  Loopback.RefusesGainsThatAreNotSteady
+  InstrumentLoopback.IsNotKeptWhileASweepRuns
+  InstrumentLoopback.KeepsTheCorrectionsWhereGainsAreNotSteady
   InstrumentLoopback.CorrectionsTakeTheErrorsOut)
 
 # Slow ones, measured; the board's limit keeps all the others together at a minute or so.
