@@ -52,8 +52,9 @@ class LoopbackRun {
   void stop(hal::AnalogStream& stream) noexcept;
 
   bool done() const noexcept { return stage_ == Stage::kDone; }
-  /// @returns kOk, the fault of the stream (kLostBlock if blocks were lost again and again), or
-  /// kNoReference: nothing like the drive comes in at one of the inputs.
+  /// @returns kOk, the fault of the stream (kLostBlock if blocks were lost again and again),
+  /// kNoReference: nothing like the drive comes in at one of the inputs, or kDistorted: the ratio
+  /// differs by more than 2 % between the frequencies, or the phases are no skew.
   Status status() const noexcept { return status_; }
   double progress() const noexcept;
   /// When `done()`, with kOk.
