@@ -83,7 +83,7 @@ class CheckCertificate(unittest.TestCase):
 
     def test_prints_the_bound_and_the_size_of_the_proof(self):
         result = self.result
-        self.assertEqual(sorted(result), sorted(["E", "bound", "gap", "cells", "multipliers",
+        self.assertEqual(sorted(result), sorted(["T", "E", "bound", "gap", "cells", "multipliers",
                                                  "nodes", "corners", "seconds", "E_range", "warnings"]))
         self.assertAlmostEqual(result["E"] / BEST_KNOWN, 1.0, delta=1e-9)
         self.assertAlmostEqual(result["gap"], result["bound"] / result["E"] - 1.0, delta=1e-12)

@@ -284,6 +284,24 @@ class WarningsOfReports(Tables, ProgramTest):
                 self.assertEqual(text.count("WARNING"), len(known))
                 self.assertIn(words or "Proven", text)
 
+    def test_certify_shortens_a_time_that_nobody_asked_for(self):
+        quick = ["--effort", "0.1", "--rounds", "1"]
+        for device in [["--model", "0.0102,55000,0.01"], ["--points", TABLES / "piezo_00.csv"],
+                       ["--model", "0.0102,1000000,0.01"]]:
+            with self.subTest(device=device):
+                proven = json.loads(self.succeed("certify", *device, *quick, "--json"))
+                words = f"T is {proven['T']!r} s, not the 0.002 s of emax report"
+                self.assertIn(words, proven["warnings"][0]["text"])
+                # It is the longest that the proof has room for, in three digits.
+                self.refuse(["certify", *device, "--time", f"{1.02 * proven['T']:.6g}"], "emax: --time: ",
+                            f"at most {proven['T']!r} s")
+        device = ["--model", "0.0102,55000,0.01"]
+        text = self.succeed("certify", *device, *quick)
+        self.assertIn("WARNING: T is 0.00181 s, not the 0.002 s of emax report", text)
+        self.assertIn("for 0.00181 s\n", text)
+        self.assertNotIn("of emax report", self.succeed("certify", *device, *quick, "--time", "0.00181"))
+        self.refuse(["certify", *device, "--time", "0.002"], "emax: --time: ", "at most 0.00181 s")
+
     def test_compare_refuses_a_sensitivity_alone(self):
         for name in ["plain.csv", "handheld_160hz.csv"]:
             results = self.succeed("report", "--points", TABLES / name, *QUICK, "--json")

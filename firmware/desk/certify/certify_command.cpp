@@ -27,6 +27,7 @@
 #include "desk/certify/certificate_file.hpp"
 #include "desk/cli/console.hpp"
 #include "desk/cli/console_progress.hpp"
+#include "desk/cli/option.hpp"
 #include "desk/cli/option_parser.hpp"
 #include "desk/cli/option_table.hpp"
 #include "desk/cli/options.hpp"
@@ -73,6 +74,7 @@ struct CertifyOptions {
   std::uint64_t rounds = 0;  // 0: as the effort allows.
   std::string out_path;      // Empty for no file.
   BoxOption box;
+  bool is_time_given = false;
 };
 
 bool take_effort(std::string_view text, double& effort_s) {
@@ -101,9 +103,9 @@ Syntax syntax_of(CertifyOptions& options) {
     syntax.options.push_back(report_option(report, name));
   }
   syntax.options.push_back(report_option(report, "json",
-                                         "{E,bound,gap,cells,multipliers,nodes,corners,\n"
-                                         "seconds,E_range,warnings} on standard output\n"
-                                         "instead of text"));
+                                         "{T,E,bound,gap,cells,multipliers,nodes,\n"
+                                         "corners,seconds,E_range,warnings} on\n"
+                                         "standard output instead of text"));
   const std::string heading = syntax.options.back().heading;
   syntax.options.push_back(
       {"box", heading, "auto|uS,uf0,ubeta", "", "auto or three numbers, uS,uf0,ubeta",
@@ -139,6 +141,7 @@ Problem parse(Span<const std::string_view> arguments, CertifyOptions& options) {
   if (options.report.measures()) {
     return bad_input("certify: no device; expected --model S,f0,beta or --points FILE");
   }
+  options.is_time_given = is_given(all, "time");
   return check_report_options(all, options.report);
 }
 
@@ -168,42 +171,48 @@ bool has_room(const ModalModel& model, double duration_s) {
          mesh_intervals(model, duration_s) <= kMaxMesh;
 }
 
-Problem too_long(const ModalModel& model, double duration_s) {
+// In three digits.
+double longest_proof_s(const ModalModel& model, double duration_s) {
   constexpr int kHalvings = 50;
-  constexpr int kDigits = 3;
   double longest_s = 0.0;
   double step_s = duration_s;
   for (int i = 0; i < kHalvings; ++i) {
     step_s *= 0.5;
     longest_s += has_room(model, longest_s + step_s) ? step_s : 0.0;
   }
+  constexpr int kDigits = 3;
+  char text[24];
+  const std::size_t length = format_general(-rounded_up(-longest_s, kDigits - 1), kDigits, text);
+  return parse_decimal(Span<const char>(text, length)).value;
+}
+
+Problem too_long(const ModalModel& model, double duration_s) {
   StringSink sink;
   app::TextWriter out(sink);
   out.text("--time: the proof needs more cells than there is room for; expected at most ");
-  out.general(-rounded_up(-longest_s, kDigits - 1), kDigits).text(" s");
+  out.general(longest_proof_s(model, duration_s), 3).text(" s");
   return bad_input(sink.text());
 }
 
+Status start(const ReportOptions& options, const ImportedPoints& imported,
+             app::Evaluation& evaluation) {
+  if (options.points_path.empty()) {
+    return evaluation.start_from_model(options.device, options.settings, app::Goal::kEnergy);
+  }
+  evaluation.give_damping(options.damping);
+  return evaluation.start_from_points(imported.points, options.settings, app::Goal::kEnergy);
+}
+
 // Finds the device and the signal with the largest energy known.
-Problem find_energy(const ReportOptions& options, ImportedPoints& imported,
+Problem find_energy(const ReportOptions& options, const ImportedPoints& imported,
                     app::EvaluationResults& results) {
   static app::EvaluationWorkspace workspace;
   app::Evaluation evaluation(results, workspace);
-  Status status = Status::kOk;
-  if (options.points_path.empty()) {
-    status = evaluation.start_from_model(options.device, options.settings, app::Goal::kEnergy);
-  } else {
-    if (Problem problem = read_points(options.points_path, options.import,
-                                      options.reference_uncertainty_percent, imported)) {
-      return problem;
-    }
-    evaluation.give_damping(options.damping);
-    status = evaluation.start_from_points(imported.points, options.settings, app::Goal::kEnergy);
-    if (Problem problem = check_given_damping(results, options)) {
-      return problem;
-    }
-  }
+  Status status = start(options, imported, evaluation);
   const bool has_points = !options.points_path.empty();
+  if (Problem problem = has_points ? check_given_damping(results, options) : Problem{}) {
+    return problem;
+  }
   ConsoleProgress progress;
   while (status == Status::kOk && !evaluation.done() && !results.has_energy) {
     if (stop_requested()) {
@@ -221,6 +230,22 @@ Problem find_energy(const ReportOptions& options, ImportedPoints& imported,
     return has_points ? judge_fit(options, evaluation, results) : Problem{};
   }
   return describe_failure(results, options, imported.names_phase_unit);
+}
+
+// The same, where nobody has asked for a time with the longest one that the proof has room for.
+//
+// @param[out] default_s The time that this is shorter than; 0 if it is not.
+Problem find_energy_in_room(CertifyOptions& options, const ImportedPoints& imported,
+                            app::EvaluationResults& results, double& default_s) {
+  Problem problem = find_energy(options.report, imported, results);
+  double& duration_s = options.report.settings.duration_s;
+  if (!problem || options.is_time_given || !results.has_model ||
+      has_room(results.model, duration_s)) {
+    return problem;
+  }
+  default_s = duration_s;
+  duration_s = longest_proof_s(results.model, duration_s);
+  return find_energy(options.report, imported, results);
 }
 
 // The bound of `emax report`, for a = 1; infinity if there is none.
@@ -384,14 +409,25 @@ struct CertifyResult {
   ProvenEnergy proven;
   double quick_bound_v2s = 0.0;  // That of emax report.
   double seconds = 0.0;
+  double default_time_s = 0.0;  // That of emax report, if T is shorter for the sake of the proof.
   std::string certificate_path;
 
   double bound_v2s() const { return std::min(proven.bound_v2s(), quick_bound_v2s); }
   double gap() const { return bound_v2s() / proven.energy_v2s - 1.0; }
 };
 
+std::string words_on_time(const CertifyResult& result) {
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.text("T is ").general(result.proven.signal->duration_s(), 3).text(" s, not the ");
+  out.general(result.default_time_s, 3);
+  out.text(" s of emax report: the proof has no room for a longer one, and E is that of this T");
+  return sink.text();
+}
+
 // As in results.json.
-void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& out) {
+void write_fit_json(const CertifyResult& result, app::TextWriter& out) {
+  const app::EvaluationResults& evaluation = *result.evaluation;
   out.text(", \"E_range\": ");
   if (evaluation.has_cut_range) {
     out.text("[").exact(evaluation.cut_low_v2s).text(", ").exact(evaluation.cut_high_v2s);
@@ -401,6 +437,11 @@ void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& o
   }
   out.text(", \"warnings\": [");
   const char* separator = "";
+  if (result.default_time_s > 0.0) {
+    out.text("{\"about\": \"energy\", \"text\": \"").text(words_on_time(result).c_str());
+    out.text("\"}");
+    separator = ", ";
+  }
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, evaluation, {})) {
       out.text(separator).text("{\"about\": \"").text(about(warning));
@@ -418,7 +459,8 @@ void write_fit_json(const app::EvaluationResults& evaluation, app::TextWriter& o
 
 void write_json(const CertifyResult& result, app::TextWriter& out) {
   const EnergyCertificate& certificate = *result.proven.certificate;
-  out.text("{\"E\": ").exact(result.proven.energy_v2s);
+  out.text("{\"T\": ").exact(result.proven.signal->duration_s());
+  out.text(", \"E\": ").exact(result.proven.energy_v2s);
   out.text(", \"bound\": ").exact(result.bound_v2s());
   out.text(", \"gap\": ").exact(result.gap());
   out.text(", \"cells\": ").integer(certificate.grid().cells);
@@ -426,7 +468,7 @@ void write_json(const CertifyResult& result, app::TextWriter& out) {
   out.text(", \"nodes\": 0, \"corners\": ");
   out.integer(result.proven.box != nullptr ? result.proven.box->models().size() : 1);
   out.text(", \"seconds\": ").fixed(result.seconds, 1);
-  write_fit_json(*result.evaluation, out);
+  write_fit_json(result, out);
 }
 
 void write_warning(const std::string& words, app::TextWriter& out) {
@@ -448,6 +490,9 @@ void write_warnings(const CertifyResult& result, app::TextWriter& out) {
   }
   if (!result.cause.empty()) {
     write_warning(result.cause, out);
+  }
+  if (result.default_time_s > 0.0) {
+    write_warning(words_on_time(result) + ".", out);
   }
   if (evaluation.has_cut_range) {
     out.text("Range of E  ").scientific(evaluation.cut_low_v2s, 3).text(" to ");
@@ -574,7 +619,12 @@ Problem run_certify(Span<const std::string_view> arguments) {
   static ImportedPoints imported;
   SingleFile file(options.out_path);
   Problem problem = file.open();
-  problem = problem ? problem : find_energy(options.report, imported, evaluation);
+  if (!problem && !options.report.points_path.empty()) {
+    problem = read_points(options.report.points_path, options.report.import,
+                          options.report.reference_uncertainty_percent, imported);
+  }
+  double default_s = 0.0;
+  problem = problem ? problem : find_energy_in_room(options, imported, evaluation, default_s);
   if (problem) {
     return problem;
   }
@@ -613,6 +663,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
   }
   CertifyResult result;
   result.evaluation = &evaluation;
+  result.default_time_s = default_s;
   if (evaluation.source == app::Source::kPoints) {
     result.cause = cause_of(evaluation.fit, imported.names_phase_unit);
   }
