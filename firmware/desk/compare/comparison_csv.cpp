@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
-#include <string_view>
 
 #include "emax/app/base/utf8.hpp"
 
@@ -19,10 +19,29 @@ using app::TextWriter;
 
 constexpr const char* kUnknownCharacter = "\xEF\xBF\xBD";  // U+FFFD.
 
-// Spreadsheets take a field that begins with one of these for a formula and run it; an apostrophe
-// before it makes it text. Control characters become blanks.
+// U+200B has no width, U+3000 is as wide as an ideogram.
+bool is_blank(std::uint32_t code) noexcept {
+  return code == ' ' || code == 0xA0 || (code >= 0x2000 && code <= 0x200B) || code == 0x202F ||
+         code == 0x205F || code == 0x3000 || code == 0xFEFF;
+}
+
+// Spreadsheets take a field that begins with one of these for a formula and run it, behind blanks
+// too; those of full width are the same to some.
+bool begins_formula(const std::string& field) noexcept {
+  constexpr std::uint32_t kFullWidth = 0xFEE0;
+  for (std::size_t at = 0; at < field.size();) {
+    const app::Character next = app::first_character(&field[at]);
+    if (!is_blank(next.code)) {
+      const std::uint32_t sign = next.code > kFullWidth ? next.code - kFullWidth : next.code;
+      return sign == '=' || sign == '+' || sign == '-' || sign == '@';
+    }
+    at += next.length;
+  }
+  return false;
+}
+
+// An apostrophe before a formula makes it text. Control characters become blanks.
 std::string harmless(const std::string& text) {
-  constexpr std::string_view kFormula = "=+-@";
   std::string field;
   for (std::size_t at = 0; at < text.size();) {
     const app::Character next = app::first_character(&text[at]);
@@ -34,10 +53,7 @@ std::string harmless(const std::string& text) {
     }
     at += length;
   }
-  const std::size_t first = field.find_first_not_of(' ');
-  const bool is_formula =
-      first != std::string::npos && kFormula.find(field[first]) != std::string_view::npos;
-  return is_formula ? "'" + field : field;
+  return begins_formula(field) ? "'" + field : field;
 }
 
 // RFC 4180: quotes around all that might be more than a word.
