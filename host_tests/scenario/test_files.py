@@ -5,6 +5,7 @@ usage: test_files.py PROGRAM DATA_DIRECTORY [unittest arguments]; EMAX_SHIM name
 
 import json
 import os
+import resource
 import signal
 import unittest
 
@@ -13,6 +14,7 @@ from program_test import DATA, MODEL, QUICK, ProgramTest, main
 SHIM = os.environ.get("EMAX_SHIM", "")
 TABLES = DATA / "tables"
 HANDHELD = ["report", "--points", TABLES / "handheld_160hz.csv", *QUICK]
+FEW_POINTS = [*QUICK, "--frequencies", "100,300,1000,2000,3000,4000,5000,6000"]
 OTHER = "f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"
 
 
@@ -203,18 +205,67 @@ class FilesThatAreKept(ProgramTest):
         self.assertEqual(self.files(), before)  # And no results.json beside the old report.
         self.assertEqual((out / "report.txt").read_text(), "of another user")
 
+    def measure(self, *options, largest_file=None, **more):
+        def limit_file_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+        more |= {"preexec_fn": limit_file_size} if largest_file else {}
+        return self.run_program("report", *FEW_POINTS, "--out", "out", *options, **more)
+
+    def points(self, name="frequency_response.csv"):
+        return (self.directory / "out" / name).read_bytes()
+
     def test_a_measurement_is_printed_where_no_file_holds_it(self):
         (self.directory / "out").mkdir()
-
-        def limit_file_size():
-            import resource
-
-            resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
-
-        result = self.run_program("report", *QUICK, "--json", "--out", "out", preexec_fn=limit_file_size)
+        result = self.measure("--json", largest_file=500)
         self.assertEqual(result.returncode, 3)
-        self.assert_one_line(result.stderr, "too large")
+        self.assert_one_line(result.stderr, "too large", "; the points are on standard output")
         self.assertEqual(json.loads(result.stdout)["model"]["source"], "bench")
+        self.assertEqual(os.listdir(self.directory / "out"), [])
+        result = self.measure(largest_file=500)
+        self.assertEqual(result.returncode, 3)
+        self.assertEqual(self.measure().returncode, 0)
+        self.assertIn(b"\n" + self.points(), result.stdout)  # The same simulated bench, so the same bytes.
+
+    def test_points_are_kept_where_there_is_room_for_them_alone(self):
+        self.assertEqual(self.measure().returncode, 0)
+        points, before = self.points(), self.files()
+        self.assertLess(len(points), 4000)
+        self.assertGreater((self.directory / "out/report.txt").stat().st_size, 4000)
+        for path in (self.directory / "out").iterdir():
+            path.unlink()
+        result = self.measure(largest_file=4000)
+        self.assertEqual(result.returncode, 3)
+        self.assert_one_line(result.stderr, "; the points are on standard output and in frequency_response.csv")
+        self.assertEqual(self.files(), ["out", "out/frequency_response.csv"])
+        self.assertEqual(self.points(), points)
+        # Those of another measurement stay.
+        (self.directory / "out/frequency_response.csv").write_text("of another one")
+        result = self.measure(largest_file=4000)
+        self.assert_one_line(result.stderr, " and in failed_frequency_response.csv")
+        self.assertEqual(self.points("failed_frequency_response.csv"), points)
+        self.assertEqual(self.points(), b"of another one")
+        self.assertIn("out/frequency_response.csv", before)
+
+    def test_points_before_a_fault_are_kept_too(self):
+        fault = ["--bench-fault", "unplugged-device@0.5"]
+        self.assertEqual(self.measure(*fault).returncode, 3)
+        points = self.points()
+        (self.directory / "out/frequency_response.csv").unlink()
+        result = self.measure(*fault, largest_file=200)
+        self.assertEqual(result.returncode, 3)
+        self.assertIn(b"\n" + points, result.stdout)
+
+    @unittest.skipIf(not SHIM, "no library to preload")
+    def test_disk_full_at_some_calls_of_a_measurement(self):
+        self.assertEqual(self.measure().returncode, 0)
+        points = self.points()
+        for number in [2, 5, 9, 14, 20]:
+            for path in (self.directory / "out").iterdir():
+                path.unlink()
+            result = self.measure(**shim(EMAX_FAIL_AT=number))
+            kept = [self.points(name) for name in os.listdir(self.directory / "out") if "frequency_response" in name]
+            self.assertTrue(points in kept or b"\n" + points in result.stdout, (number, result.stderr))
 
 
 if __name__ == "__main__":

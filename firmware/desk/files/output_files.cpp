@@ -109,12 +109,21 @@ Problem describe(const GnuplotRun& run, const std::string& directory, const char
 }  // namespace
 
 OutputFiles::~OutputFiles() {
-  if (!temporary_directory_.empty()) {
-    desk::remove_flat(temporary_directory_);
-  }
+  abandon();
   for (auto directory = made_.rbegin(); directory != made_.rend(); ++directory) {
     rmdir(directory->c_str());
   }
+}
+
+void OutputFiles::abandon() {
+  if (!temporary_directory_.empty()) {
+    desk::remove_flat(temporary_directory_);
+  }
+  temporary_directory_.clear();
+  temporary_lock_.release();
+  written_.clear();
+  dropped_.clear();
+  set_aside_.clear();
 }
 
 Problem OutputFiles::open(const std::string& directory) {

@@ -73,6 +73,9 @@ class OutputFiles final {
   /// Puts all files in place, over those of an earlier run.
   Problem commit();
 
+  /// Takes back all that has been added, dropped or set aside, which makes room on a full disk.
+  void abandon();
+
  private:
   using WriteText = void (*)(void* context, app::TextWriter& out);
 

@@ -130,14 +130,31 @@ Problem write_files(const app::EvaluationResults& results, const app::ReportCont
   return stop_requested() ? stopped() : files.commit();
 }
 
+void write_points(const app::EvaluationResults* results, const app::ReportContext& context,
+                  app::TextWriter& out) {
+  if (results == nullptr) {
+    write_measured_points_csv(*context.measurement, out);
+    return;
+  }
+  write_frequency_response_csv(*results, &context.measurement->sweep, out);
+}
+
+std::string write_points_alone(const app::EvaluationResults* results,
+                               const app::ReportContext& context, OutputFiles& files) {
+  constexpr const char* kPrefix = "failed_";
+  files.abandon();
+  files.set_prefix(files.has(kPointsTable) ? kPrefix : "");
+  const Problem problem =
+      files.add(kPointsTable, [&](app::TextWriter& out) { write_points(results, context, out); });
+  return problem || files.commit() ? "" : files.prefix() + kPointsTable;
+}
+
 Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,
                           OutputFiles& files) {
   const auto text = [&](app::TextWriter& out) { write_measurement(context, refused, out); };
   const auto json = [&](app::TextWriter& out) { write_measurement_json(context, refused, out); };
   const auto page = [&](app::TextWriter& out) { write_fault_page(context, refused, out); };
-  const auto points = [&](app::TextWriter& out) {
-    write_measured_points_csv(*context.measurement, out);
-  };
+  const auto points = [&](app::TextWriter& out) { write_points(nullptr, context, out); };
   // A complete report, which alone has a signal, is worth more than what a fault leaves.
   if (files.has("signal.csv")) {
     files.set_prefix("failed_");

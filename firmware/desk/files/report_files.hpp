@@ -1,6 +1,9 @@
 // What `emax report --out` leaves in its directory.
 #pragma once
 
+#include <string>
+
+#include "emax/app/base/text_writer.hpp"
 #include "emax/app/evaluate/evaluation_results.hpp"
 #include "emax/app/report/report_context.hpp"
 
@@ -15,6 +18,20 @@ namespace emax::desk {
 /// @param[out] remark     Why there are no pictures, if there are none; all else is there then.
 Problem write_files(const app::EvaluationResults& results, const app::ReportContext& context,
                     OutputFiles& files, Problem& remark);
+
+/// Writes a table of what has been measured.
+///
+/// @param[in] context With a measurement.
+/// @param[in] results Null or without points if the measurement failed.
+void write_points(const app::EvaluationResults* results, const app::ReportContext& context,
+                  app::TextWriter& out);
+
+/// Where the files of a measurement cannot be written, tries its points alone, which take little
+/// room, under a name that replaces no other measurement.
+///
+/// @returns The name of the file; empty if there is none.
+std::string write_points_alone(const app::EvaluationResults* results,
+                               const app::ReportContext& context, OutputFiles& files);
 
 /// Writes what there is of a measurement that led to no result, and puts it in place.
 ///

@@ -159,14 +159,32 @@ Problem print(Write write) {
   return check_output(sink);
 }
 
+// Of a measurement whose files cannot be written: its points, in a file of their own if there is
+// room for that.
+//
+// @returns What became of them, as the end of a line.
+std::string keep_points(const app::EvaluationResults* results, const app::ReportContext& context,
+                        OutputFiles& files) {
+  const std::string name = write_points_alone(results, context, files);
+  return "; the points are on standard output" + (name.empty() ? "" : " and in " + name);
+}
+
 // The files and the text of a measurement that has led to no result: what there is.
 Problem keep(const app::ReportContext& context, const app::EvaluationResults* refused, bool json,
              OutputFiles* files) {
-  const Problem problem =
-      files != nullptr ? write_fault_files(context, refused, *files) : Problem{};
+  Problem problem = files != nullptr ? write_fault_files(context, refused, *files) : Problem{};
+  const bool are_points_lost = problem.status == ExitStatus::kFault;
+  if (are_points_lost) {
+    problem.line += keep_points(nullptr, context, *files);
+  }
   const Problem printed =
       json ? print([&](app::TextWriter& out) { write_measurement_json(context, refused, out); })
-           : print([&](app::TextWriter& out) { write_measurement(context, refused, out); });
+           : print([&](app::TextWriter& out) {
+               write_measurement(context, refused, out);
+               if (are_points_lost) {
+                 write_points(nullptr, context, out.line());
+               }
+             });
   return problem ? problem : printed;
 }
 
@@ -312,15 +330,25 @@ Problem run_report(Span<const std::string_view> arguments) {
   Problem remark;
   Problem unwritten =
       files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
+  // A measurement that no file holds is at least printed, with its points.
+  const bool are_points_lost =
+      unwritten.status == ExitStatus::kFault && options.measures() && !options.json;
+  if (unwritten.status == ExitStatus::kFault && options.measures()) {
+    unwritten.line += keep_points(&evaluation, context, *files);
+  }
   if (!unwritten && !is_of_rest) {
     unwritten = write_digital(results, digital);
   }
-  // A measurement that no file holds is at least printed.
   if (unwritten && !(unwritten.status == ExitStatus::kFault && options.measures())) {
     return unwritten;
   }
   Problem problem = options.json ? print([&](app::TextWriter& out) { write_results(results, out); })
-                                 : print([&](app::TextWriter& out) { write_text(results, out); });
+                                 : print([&](app::TextWriter& out) {
+                                     write_text(results, out);
+                                     if (are_points_lost) {
+                                       write_points(&evaluation, context, out.line());
+                                     }
+                                   });
   problem = unwritten ? unwritten : problem;
   if (is_of_rest && !problem) {
     return problem_of_work;
