@@ -31,6 +31,8 @@ class ConversionSetter final {
                         "expected one column of each");
       }
       conversion.is_there = true;
+      conversion.is_uncertainty =
+          role != Role::kFrequency && role != Role::kAmplitude && role != Role::kPhase;
       conversion.column = i;
       conversion.name = table_.columns[i].name;
       conversion.sign = table_.columns[i].is_lag ? -1.0 : 1.0;
@@ -83,7 +85,24 @@ class ConversionSetter final {
     if (!conversion.unit.is_given() || conversion.unit.quantity != quantity) {
       return unknown_unit(conversion, quantity);
     }
-    return contradiction(conversion, given);
+    const ImportError error = settle_grad(conversion);
+    return error ? error : contradiction(conversion, given);
+  }
+
+  // Degrees of a German text, or gon?
+  ImportError settle_grad(Conversion& conversion) const {
+    if (!are_same(conversion.unit, kGrad)) {
+      return {};
+    }
+    if (is_german(table_.columns)) {
+      conversion.unit = kDegree;
+      return {};
+    }
+    return error_at(table_.header_line + 1,
+                    "the unit " + quoted(table_.columns[conversion.column].unit_spelling) + " of " +
+                        quoted(conversion.name) +
+                        " may be degrees, as in German, or gon, 400 of which are a turn",
+                    "expected deg or gon in its place");
   }
 
   ImportError contradiction(const Conversion& conversion, const Unit& given) const {
@@ -117,8 +136,9 @@ class ConversionSetter final {
           "--input-units names it");
     }
     if (!decibel.is_decibel) {
-      return set_unit(by_.amplitude(), Quantity::kAmplitude, options_.amplitude_unit,
-                      kVoltsPerAcceleration);
+      const ImportError error = set_unit(by_.amplitude(), Quantity::kAmplitude,
+                                         options_.amplitude_unit, kVoltsPerAcceleration);
+      return error ? error : check_charge();
     }
     by_.amplitude().is_decibel = true;
     by_.amplitude().unit =
@@ -129,6 +149,19 @@ class ConversionSetter final {
     return !by_.amplitude().unit.is_given() || by_.amplitude().unit.quantity != Quantity::kAmplitude
                ? unknown_unit(by_.amplitude(), Quantity::kAmplitude)
                : ImportError{};
+  }
+
+  // A charge is in no unit of a voltage, whether that is stated or the one by default.
+  ImportError check_charge() const {
+    const Column& column = table_.columns[by_.amplitude().column];
+    if (!column.is_charge || by_.amplitude().unit.is_charge) {
+      return {};
+    }
+    return error_at(table_.header_line + 1,
+                    quoted(column.name) + " is a charge, and its unit " +
+                        (column.unit_spelling.empty() ? "is not stated" : "is one of voltage"),
+                    "expected pC/(m/s2) or pC/g in the header or by --input-units; 1 pC is then "
+                    "taken as 1 V, so E holds for a charge amplifier of 1 V/pC");
   }
 
   // An uncertainty is in its own unit, in percent or dB, or in the unit of what it belongs to.
@@ -152,6 +185,9 @@ class ConversionSetter final {
     const bool is_plain = u.unit.is_given() && u.unit.quantity == wanted;
     if (u.is_decibel) {
       u.unit = kDecibelUnit;
+    }
+    if (ImportError error = settle_grad(u)) {
+      return error;
     }
     return is_plain || u.is_decibel || u.is_relative
                ? ImportError{}

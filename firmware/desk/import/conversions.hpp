@@ -24,6 +24,7 @@ struct Conversion {
   double sign = 1.0;                  ///< -1 for a lag that is positive.
   double coverage = kImportCoverage;  ///< Of an uncertainty.
   bool is_there = false;
+  bool is_uncertainty = false;
   bool is_relative = false;  ///< An uncertainty in percent.
   bool is_decibel = false;
 };
@@ -54,9 +55,10 @@ class Conversions final {
 };
 
 /// Sets them from the header, the lines around the table and the options. Refused are units that
-/// are not known or that the options contradict, two columns of one quantity, coverage factors that
-/// contradict each other or are stated of one uncertainty only, a table whose uncertainties nobody
-/// states or two state, and options about columns that the table does not have.
+/// are not known, that may be one of two or that the options contradict, two columns of one
+/// quantity, coverage factors that contradict each other or are stated of one uncertainty only, a
+/// table whose uncertainties nobody states or two state, and options about columns that the table
+/// does not have.
 ///
 /// @param[out] conversions Of no use after an error.
 ImportError set_conversions(const FoundTable& table, const ImportOptions& options,

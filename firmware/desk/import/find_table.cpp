@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "desk/import/labview_header.hpp"
+
 namespace emax::desk {
 
 namespace {
@@ -83,6 +85,10 @@ class TableFinder final {
   }
 
   ImportError take_header(std::size_t columns) {
+    const LabviewHeader labview = read_labview_header(table_.text.lines);
+    if (labview.names_line != 0) {
+      return take_labview(labview);
+    }
     for (std::size_t i = 0; i < before_.size(); ++i) {
       const std::vector<std::string> names = names_in(before_[i]);
       const Header header = read_header(names);
@@ -100,6 +106,35 @@ class TableFinder final {
       }
     }
     return before_.empty() ? take_comment_as_header(columns) : refuse_header(columns);
+  }
+
+  // X_Value is what the lines above say, and the units are there, too.
+  ImportError take_labview(const LabviewHeader& labview) {
+    std::vector<std::string> names = names_in(labview.names_line);
+    if (!labview.is_frequency) {
+      return error_at(labview.names_line + 1, "X_Value of this LabVIEW file is no frequency",
+                      "expected a spectrum, whose X_Dimension is Frequency, or the name Frequency "
+                      "in place of X_Value");
+    }
+    names.front() = "Frequency";
+    const Header header = read_header(names);
+    if (!header.is_complete) {
+      return error_at(labview.names_line + 1, "the header has no name for the amplitude",
+                      "expected names of the channels such as Amplitude, Phase, U amplitude and U "
+                      "phase in place of Untitled");
+    }
+    take_names(header, labview.names_line);
+    table_.is_labview = true;
+    table_.columns.front().name = "X_Value";
+    table_.columns.front().unit_spelling = labview.unit_of_frequency;
+    for (std::size_t i = 1; i < std::min(table_.columns.size(), labview.units.size()); ++i) {
+      std::string& spelling = table_.columns[i].unit_spelling;
+      spelling = spelling.empty() ? labview.units[i] : spelling;
+    }
+    for (std::size_t line = 0; line < labview.names_line; ++line) {
+      table_.header_lines.push_back(line);  // All that is to be read there has been read.
+    }
+    return {};
   }
 
   // Two lines that are a header only together: "Magnitude" and "Phase" above "f", "value", "U".
@@ -158,17 +193,29 @@ class TableFinder final {
     }
   }
 
-  // Behind an empty line, words up to the end of the text are no rows.
+  // Behind an empty line, words up to the end of the text are no rows; without one, words that are
+  // no row with a fault.
   void find_end() {
     const std::vector<std::string>& lines = table_.text.lines;
     table_.end_row = lines.size();
+    std::size_t words_begin = lines.size();
+    bool are_all_words = true;
     for (std::size_t i = lines.size(); i > table_.first_row; --i) {
       const bool is_empty = lines[i - 1].find_first_not_of(" \t,;") == std::string::npos;
       if (is_empty) {
         table_.end_row = i;
-      } else if (!is_comment(lines[i - 1]) && !is_footer(lines[i - 1])) {
-        return;
+        are_all_words = true;
+      } else if (!is_comment(lines[i - 1])) {
+        if (!is_footer(lines[i - 1])) {
+          break;
+        }
+        are_all_words = are_all_words && is_no_row(lines[i - 1]);
+        words_begin = are_all_words ? i - 1 : words_begin;
       }
+    }
+    if (words_begin < table_.end_row) {
+      table_.end_row = words_begin;
+      table_.first_footer = words_begin;
     }
   }
 
@@ -177,9 +224,90 @@ class TableFinder final {
     return read_cell_with_unit(first, table_.layout.has_decimal_comma).cell.kind == CellKind::kText;
   }
 
+  // "Page 1 of 1": a word of several letters, and less numbers than a row with a fault has.
+  bool is_no_row(const std::string& line) const {
+    constexpr long kLeastLetters = 2;
+    constexpr long kMostNumbers = 2;
+    std::vector<std::string> cells = cells_of(without_comment(line), table_.layout.separator);
+    drop_empty_end(cells, 1);
+    const std::string& first = cells.front();
+    const auto letters = std::count_if(first.begin(), first.end(), is_letter);
+    const auto numbers = std::count_if(cells.begin(), cells.end(), [this](const std::string& cell) {
+      const CellKind kind = read_cell(cell, table_.layout.has_decimal_comma).kind;
+      return kind == CellKind::kNumber || kind == CellKind::kAmbiguous;
+    });
+    const bool begins_as_number = !first.empty() && first.front() >= '0' && first.front() <= '9';
+    return letters >= kLeastLetters && !begins_as_number && numbers <= kMostNumbers &&
+           cells.size() != table_.columns.size();
+  }
+
+  static bool is_letter(char c) noexcept {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           static_cast<unsigned char>(c) >= 0x80;
+  }
+
+  // Frequencies with one mark that may be of thousands or a decimal sign: the order tells.
+  ImportError settle_thousands() {
+    const std::size_t column = column_of(table_.columns, Role::kFrequency);
+    const bool has_comma_alone = table_.layout.has_decimal_comma && !has_comma_beside(column);
+    // Commas of frequencies alone say nothing of the rest of the table.
+    const bool has_decimal_comma = table_.layout.has_decimal_comma && !has_comma_alone;
+    std::vector<double> with_thousands;
+    std::vector<double> with_decimals;
+    std::size_t open_line = 0;
+    for (std::size_t i = table_.first_row; i < table_.end_row; ++i) {
+      const std::vector<std::string> row = table_.cells(i);
+      if (is_comment(table_.text.lines[i]) || column >= row.size()) {
+        continue;
+      }
+      const Cell cell = read_cell_with_unit(row[column], has_decimal_comma).cell;
+      const bool is_ambiguous = cell.kind == CellKind::kAmbiguous;
+      if (has_comma_alone && cell.kind == CellKind::kText) {
+        return {};  // "12,5" is no thousand.
+      }
+      open_line = is_ambiguous && open_line == 0 ? i + 1 : open_line;
+      with_thousands.push_back(cell.value);
+      with_decimals.push_back(is_ambiguous ? cell.value / 1000.0 : cell.value);
+    }
+    if (open_line == 0) {
+      return {};
+    }
+    table_.has_thousands = is_in_order(with_thousands) && !is_in_order(with_decimals);
+    if (has_comma_alone && is_in_order(with_thousands) && !table_.has_thousands) {
+      return error_at(open_line,
+                      "the comma in the frequency may be a decimal sign or a mark of thousands",
+                      "expected frequencies without marks of thousands, such as 1000 or 1.25");
+    }
+    if (table_.has_thousands) {
+      table_.layout.has_decimal_comma = has_decimal_comma;
+    }
+    return {};
+  }
+
+  bool has_comma_beside(std::size_t column) const {
+    for (std::size_t i = table_.first_row; i < table_.end_row; ++i) {
+      const std::vector<std::string> row = table_.cells(i);
+      for (std::size_t cell = 0; cell < row.size(); ++cell) {
+        if (cell != column && !is_comment(table_.text.lines[i]) &&
+            row[cell].find(',') != std::string::npos) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  static bool is_in_order(const std::vector<double>& values) {
+    return std::is_sorted(values.begin(), values.end()) ||
+           std::is_sorted(values.rbegin(), values.rend());
+  }
+
   // Of the lines around the table, and of comments anywhere.
   ImportError take_statements() {
     find_end();
+    if (ImportError error = settle_thousands()) {
+      return error;
+    }
     StatementReader reader;
     for (std::size_t i = 0; i < table_.text.lines.size(); ++i) {
       const bool is_header = std::find(table_.header_lines.begin(), table_.header_lines.end(), i) !=

@@ -23,8 +23,12 @@ struct FoundTable {
   std::vector<std::size_t> header_lines;  ///< Where the names and units stand; empty for none.
   std::size_t header_line = 0;
   std::size_t first_row = 0;
-  std::size_t end_row = 0;  ///< Behind it there are only words.
-  bool is_native = false;   ///< It has no header and is taken as the native form.
+  std::size_t end_row = 0;       ///< Behind it there are only words.
+  std::size_t first_footer = 0;  ///< Of the words that end it without an empty line; 0 for none.
+  bool is_native = false;        ///< It has no header and is taken as the native form.
+  bool is_labview = false;       ///< The columns stand behind the header of a LabVIEW file.
+  /// "1,000" of a frequency is 1000: read so they are in order, and read as 1 they are not.
+  bool has_thousands = false;
 
   /// @returns The cells of a line without its comment.
   std::vector<std::string> cells(std::size_t line) const;

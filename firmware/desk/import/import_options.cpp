@@ -39,7 +39,7 @@ bool take_one_uncertainty(std::string_view item, ImportOptions& options) {
     return false;
   }
   const Unit unit = find_unit(item.substr(number.length));
-  if (!unit.is_given() || unit.quantity == Quantity::kFrequency) {
+  if (!unit.is_given() || unit.quantity == Quantity::kFrequency || are_same(unit, kGrad)) {
     return false;
   }
   GivenUncertainty& taken =
@@ -54,7 +54,7 @@ bool take_one_uncertainty(std::string_view item, ImportOptions& options) {
 bool take_one_unit(std::string_view item, ImportOptions& options) {
   const Unit unit = find_unit(item);
   if (!unit.is_given() || unit.quantity == Quantity::kRatio ||
-      unit.quantity == Quantity::kDecibel) {
+      unit.quantity == Quantity::kDecibel || are_same(unit, kGrad)) {
     return false;
   }
   Unit& taken = unit.quantity == Quantity::kFrequency   ? options.frequency_unit

@@ -26,7 +26,7 @@ struct ImportOptions {
 
 /// Reads "1%,1deg": expanded uncertainties (k = 2) of amplitude and phase, in this order or the
 /// other, one or both; of the amplitude in percent, dB or a unit of its own, of the phase in deg,
-/// rad or mrad.
+/// rad, mrad or gon.
 ///
 /// @returns False for anything else; nothing has changed then.
 bool take_uncertainty(std::string_view text, ImportOptions& options);
@@ -42,8 +42,9 @@ bool take_input_units(std::string_view text, ImportOptions& options);
 bool take_channel_delay(std::string_view text, ImportOptions& options);
 
 inline constexpr char kExpectedUncertaintyOption[] =
-    "expanded uncertainties (k = 2) with their units, such as 1%,1deg";
-inline constexpr char kExpectedInputUnits[] = "known units, such as mV/g or kHz,mV/(m/s2),rad";
+    "expanded uncertainties (k = 2) with their units, such as 1%,1deg (deg or gon, not grad)";
+inline constexpr char kExpectedInputUnits[] =
+    "known units, such as mV/g or kHz,mV/(m/s2),rad (deg or gon, not grad)";
 inline constexpr char kExpectedChannelDelay[] = "a number of seconds from -1 to 1";
 
 }  // namespace emax::desk

@@ -53,7 +53,14 @@ constexpr Spelling kSpellings[] = {
     {"deg", kDegree},
     {"degree", kDegree},
     {"degrees", kDegree},
-    {"grad", kDegree},
+    {"grad", kGrad},
+    {"gon", {Quantity::kPhase, "gon", 0.9 * kDegree.scale}},
+    {"gradian", {Quantity::kPhase, "gon", 0.9 * kDegree.scale}},
+    {"gradians", {Quantity::kPhase, "gon", 0.9 * kDegree.scale}},
+    {"degr\xC3\xA9", kDegree},
+    {"degr\xC3\xA9s", kDegree},
+    {"gradi", kDegree},
+    {"grados", kDegree},
     {"\xC2\xB0", kDegree},
     {"\xC2\xBA", kDegree},
     {"rad", kRadian},
@@ -65,6 +72,7 @@ constexpr Spelling kSpellings[] = {
     {"pct", kPercent},
     {"prozent", kPercent},
     {"pourcent", kPercent},
+    {"percento", kPercent},
     {"db", kDecibelUnit},
 };
 
@@ -153,6 +161,10 @@ bool drop_end(std::string& text, std::string_view end) {
 
 }  // namespace
 
+bool are_same(const Unit& one, const Unit& other) noexcept {
+  return std::string_view(one.name) == other.name;
+}
+
 Unit find_unit(std::string_view spelling) {
   std::string wanted = canonical(spelling);
   (void)(drop_end(wanted, "peak") || drop_end(wanted, "rms"));
@@ -193,7 +205,7 @@ const char* expected_units(Quantity quantity) noexcept {
     case Quantity::kAmplitude:
       return "expected V/(m/s2), mV/(m/s2), V/g, mV/g, pC/(m/s2), pC/g, or dB re 1 of one of these";
     case Quantity::kPhase:
-      return "expected deg, rad or mrad";
+      return "expected deg, rad, mrad or gon";
     case Quantity::kRatio:
     case Quantity::kDecibel:
       return "expected the unit of the amplitude, percent or dB";

@@ -19,10 +19,15 @@ struct Unit {
   constexpr bool is_given() const noexcept { return name[0] != '\0'; }
 };
 
+/// @returns Whether both are the same unit, or both none.
+bool are_same(const Unit& one, const Unit& other) noexcept;
+
 inline constexpr Unit kHertz = {Quantity::kFrequency, "Hz", 1.0};
 inline constexpr Unit kRadiansPerSecond = {Quantity::kFrequency, "rad/s", 0.15915494309189535};
 inline constexpr Unit kVoltsPerAcceleration = {Quantity::kAmplitude, "V/(m/s2)", 1.0};
 inline constexpr Unit kDegree = {Quantity::kPhase, "deg", 0.017453292519943295};
+/// "Grad" of a German text are degrees; the grad of others is the gon, a 400th of a turn.
+inline constexpr Unit kGrad = {Quantity::kPhase, "grad", kDegree.scale};
 inline constexpr Unit kRadian = {Quantity::kPhase, "rad", 1.0};
 inline constexpr Unit kPercent = {Quantity::kRatio, "percent", 0.01};
 inline constexpr Unit kPartOfOne = {Quantity::kRatio, "relative", 1.0};

@@ -20,6 +20,8 @@ constexpr double kNepersPerDecibel = 0.11512925464970229;  // ln(10)/20.
 constexpr char kExpectedNumber[] = "expected a number such as 1.03 or 4e3";
 constexpr char kExpectedComma[] =
     "expected a number such as 1,03 or 4e3, with a decimal comma as in the rest of the table";
+constexpr char kExpectedOneUnit[] =
+    "expected the unit of all in the name of the column, such as \"u_amplitude [%]\"";
 constexpr char kExpectedOneSign[] =
     "expected one decimal sign in all of the table, and no mark of thousands";
 
@@ -55,6 +57,9 @@ class RowReader final {
   ImportError read_row(std::size_t line) {
     std::vector<std::string> row = table_.cells(line);
     drop_empty_end(row, table_.columns.size());
+    if (lacks_comment(row)) {
+      row.emplace_back();
+    }
     if (row.size() != table_.columns.size()) {
       return error_at(line + 1,
                       std::string(row.size() == 1 ? "there is " : "there are ") +
@@ -74,6 +79,12 @@ class RowReader final {
       rows_.push_back(point);
     }
     return error;
+  }
+
+  // LabVIEW names a last column for comments, and writes it only where there is one.
+  bool lacks_comment(const std::vector<std::string>& row) const {
+    return table_.is_labview && row.size() + 1 == table_.columns.size() &&
+           table_.columns.back().name == "Comment";
   }
 
   CellWithUnit cell_of(const std::vector<std::string>& row, const Conversion& from) const {
@@ -96,6 +107,10 @@ class RowReader final {
                           std::size_t line, double& value) const {
     const CellWithUnit read = cell_of(row, from);
     const bool has_comma = table_.layout.has_decimal_comma;
+    if (read.cell.is_half_width && !from.is_uncertainty) {
+      return bad_cell(row, from, line, " has a sign of plus and minus, as an uncertainty",
+                      kExpectedNumber);
+    }
     switch (read.cell.kind) {
       case CellKind::kNumber:
         value = read.cell.value;
@@ -103,11 +118,18 @@ class RowReader final {
       case CellKind::kBlank:
         return bad_cell(row, from, line, " is missing", kExpectedNumber);
       case CellKind::kText:
-        return bad_cell(row, from, line, " is not a number",
-                        has_comma ? kExpectedComma : kExpectedNumber);
+        return read_cell_with_unit(row[from.column], has_comma).unit_spelling.empty()
+                   ? bad_cell(row, from, line, " is not a number",
+                              has_comma ? kExpectedComma : kExpectedNumber)
+                   : bad_cell(row, from, line, " has a unit, and other rows have none",
+                              kExpectedOneUnit);
       case CellKind::kNotFinite:
         return bad_cell(row, from, line, " is not a finite number", kExpectedNumber);
       case CellKind::kAmbiguous:
+        if (table_.has_thousands && &from == &by_.frequency()) {
+          value = read.cell.value;
+          return {};
+        }
         return bad_cell(
             row, from, line,
             has_comma ? " has a point among decimal commas" : " has a comma among decimal points",
@@ -120,10 +142,13 @@ class RowReader final {
   ImportError convert(const std::vector<std::string>& row, const Conversion& from, std::size_t line,
                       const CellWithUnit& read, double& value) const {
     const Unit unit = find_unit(read.unit_spelling);
-    if (unit.name == std::string_view(from.unit.name)) {
+    const bool is_degree =
+        are_same(unit, kGrad) && are_same(from.unit, kDegree) && is_german(table_.columns);
+    if (are_same(unit, from.unit) || is_degree) {
       return {};
     }
-    const bool is_plain = !from.is_decibel && unit.quantity == from.unit.quantity;
+    const bool is_plain =
+        !from.is_decibel && unit.quantity == from.unit.quantity && !are_same(unit, kGrad);
     if (!is_plain) {
       return bad_cell(row, from, line, " is in another unit than its column",
                       expected_units(from.unit.quantity));

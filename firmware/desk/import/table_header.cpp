@@ -13,9 +13,18 @@ namespace emax::desk {
 
 namespace {
 
-constexpr std::string_view kFrequencyWords[] = {
-    "f", "freq", "frequency", "frequenz", "fr\xC3\xA9quence", "frequence", "frecuencia"};
-constexpr std::string_view kOmegaWords[] = {"omega", "w", "\xCF\x89", "kreisfrequenz"};
+constexpr std::string_view kFrequencyWords[] = {"f",
+                                                "freq",
+                                                "frequency",
+                                                "frequenz",
+                                                "messfrequenz",
+                                                "pr\303\274ffrequenz",
+                                                "anregungsfrequenz",
+                                                "fr\303\251quence",
+                                                "frequence",
+                                                "frecuencia",
+                                                "frequenza"};
+constexpr std::string_view kOmegaWords[] = {"omega", "w", "\317\211", "kreisfrequenz"};
 constexpr std::string_view kAmplitudeWords[] = {"a",
                                                 "amp",
                                                 "ampl",
@@ -28,20 +37,50 @@ constexpr std::string_view kAmplitudeWords[] = {"a",
                                                 "empfindlichkeit",
                                                 "betrag",
                                                 "k",
+                                                "h",
+                                                "sua",
+                                                "sqa",
                                                 "\303\274bertragungskoeffizient",
+                                                "\303\274bertragungskoeffizienten",
                                                 "\303\274bertragungsfaktor",
+                                                "\303\274bertragungsfaktors",
                                                 "amplitudengang",
                                                 "response",
-                                                "sensibilit\xC3\xA9",
+                                                "sensibilit\303\251",
                                                 "sensibilite",
-                                                "sensibilidad"};
-constexpr std::string_view kPhaseWords[] = {"phase",      "phi",
-                                            "\xCF\x86",   "\xCF\x95",
-                                            "arg",        "angle",
-                                            "winkel",     "phasenwinkel",
-                                            "phasenlage", "phasenverschiebung",
-                                            "phasengang", "d\303\251phasage",
-                                            "dephasage",  "fase"};
+                                                "sensibilidad",
+                                                "sensibilit\303\240",
+                                                "sensibilita",
+                                                "module",
+                                                "m\303\263dulo",
+                                                "modulo",
+                                                "amplitud",
+                                                "ampiezza"};
+// What may stand before some of them, in the same word.
+constexpr std::string_view kChargePrefixes[] = {"ladungs"};
+constexpr std::string_view kVoltagePrefixes[] = {"spannungs"};
+constexpr std::string_view kPhaseWords[] = {"phase",
+                                            "phi",
+                                            "\317\206",
+                                            "\317\225",
+                                            "\317\206ua",
+                                            "\317\206qa",
+                                            "arg",
+                                            "angle",
+                                            "winkel",
+                                            "phasenwinkel",
+                                            "phasenlage",
+                                            "phasenverschiebung",
+                                            "phasenverschiebungswinkel",
+                                            "phasengang",
+                                            "d\303\251phasage",
+                                            "dephasage",
+                                            "fase",
+                                            "sfasamento",
+                                            "desfase",
+                                            "\303\241ngulo",
+                                            "angulo",
+                                            "angolo"};
 constexpr std::string_view kUncertaintyWords[] = {"u",
                                                   "u95",
                                                   "unc",
@@ -49,31 +88,55 @@ constexpr std::string_view kUncertaintyWords[] = {"u",
                                                   "uncertainty",
                                                   "unsicherheit",
                                                   "messunsicherheit",
+                                                  "standardunsicherheit",
+                                                  "standardmessunsicherheit",
                                                   "incertitude",
-                                                  "incertidumbre"};
-constexpr std::string_view kFillers[] = {"of",
-                                         "the",
-                                         "in",
-                                         "der",
-                                         "des",
-                                         "abs",
-                                         "rel",
-                                         "relative",
-                                         "expanded",
-                                         "erweiterte",
-                                         "shift",
-                                         "response",
-                                         "value",
-                                         "measured",
-                                         "wert",
-                                         "und",
-                                         "and",
-                                         "erweitert",
-                                         "\303\251largie",
-                                         "elargie",
-                                         "expandida",
-                                         "de",
-                                         "la"};
+                                                  "incertidumbre",
+                                                  "incertezza"};
+// Of an uncertainty with k = 1, as words of their own or behind the uncertainty.
+constexpr std::string_view kStandardWords[] = {"standard", "std", "standardunsicherheit",
+                                               "standardmessunsicherheit"};
+constexpr std::string_view kStandardWordsBehind[] = {
+    "type", "tipo", "t\303\255pica", "tipica", "est\303\241ndar", "estandar"};
+constexpr std::string_view kRelativeWords[] = {"rel",      "relative", "relativer", "relativen",
+                                               "relativa", "relativo", "relatif"};
+constexpr std::string_view kChargeWords[] = {"charge", "ladung"};
+constexpr std::string_view kGermanWords[] = {"frequenz",
+                                             "messfrequenz",
+                                             "pr\303\274ffrequenz",
+                                             "anregungsfrequenz",
+                                             "kreisfrequenz",
+                                             "empfindlichkeit",
+                                             "betrag",
+                                             "amplitudengang",
+                                             "winkel",
+                                             "phasenwinkel",
+                                             "phasenlage",
+                                             "phasenverschiebung",
+                                             "phasenverschiebungswinkel",
+                                             "phasengang",
+                                             "unsicherheit",
+                                             "messunsicherheit",
+                                             "standardunsicherheit",
+                                             "standardmessunsicherheit",
+                                             "erweiterte"};
+constexpr std::string_view kFillers[] = {"of",          "the",
+                                         "in",          "der",
+                                         "des",         "abs",
+                                         "expanded",    "combined",
+                                         "voltage",     "erweiterte",
+                                         "kombinierte", "shift",
+                                         "response",    "value",
+                                         "measured",    "wert",
+                                         "und",         "and",
+                                         "erweitert",   "\303\251largie",
+                                         "elargie",     "compos\303\251e",
+                                         "composee",    "expandida",
+                                         "ampliada",    "combinada",
+                                         "estesa",      "composta",
+                                         "combinata",   "de",
+                                         "del",         "della",
+                                         "di",          "la"};
 // A column with one of these is none of ours.
 constexpr std::string_view kOtherWords[] = {
     "deviation",   "dev",      "error", "abweichung", "residual", "model",
@@ -127,6 +190,23 @@ std::vector<Word> words_of(const std::string& cell) {
   return words;
 }
 
+template <std::size_t kCount>
+bool drop_prefix(std::string_view& word, const std::string_view (&prefixes)[kCount]) {
+  for (const std::string_view prefix : prefixes) {
+    if (word.size() > prefix.size() && word.substr(0, prefix.size()) == prefix) {
+      word.remove_prefix(prefix.size());
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string_view without_prefix(std::string_view word, Column& column) {
+  column.is_charge = column.is_charge || drop_prefix(word, kChargePrefixes);
+  (void)drop_prefix(word, kVoltagePrefixes);
+  return word;
+}
+
 Role main_role(std::string_view word, Column& column) {
   if (is_one_of(word, kFrequencyWords)) {
     return Role::kFrequency;
@@ -135,7 +215,7 @@ Role main_role(std::string_view word, Column& column) {
     column.is_omega = true;
     return Role::kFrequency;
   }
-  if (is_one_of(word, kAmplitudeWords)) {
+  if (is_one_of(without_prefix(word, column), kAmplitudeWords)) {
     return Role::kAmplitude;
   }
   return is_one_of(word, kPhaseWords) ? Role::kPhase : Role::kIgnored;
@@ -155,15 +235,23 @@ class NameReader final {
       is_first_ = false;
       return true;
     }
-    if (word == "standard" || word == "std") {
+    if (is_one_of(word, kStandardWords) ||
+        (is_uncertainty_ && is_one_of(word, kStandardWordsBehind))) {
       is_standard_ = true;
+      return true;
+    }
+    if (is_one_of(word, kChargeWords)) {
+      column_.is_charge = true;
       return true;
     }
     if (word == "lag" && role_ == Role::kPhase) {
       column_.is_lag = true;
       return true;
     }
-    column_.is_relative = column_.is_relative || word == "rel" || word == "relative";
+    if (is_one_of(word, kRelativeWords)) {
+      column_.is_relative = true;
+      return true;
+    }
     if (is_uncertainty_ && (word == "common" || word == "shared")) {
       is_common_ = true;
       return true;
@@ -198,6 +286,7 @@ class NameReader final {
   bool take_role(const std::string& word) {
     if (is_one_of(word, kUncertaintyWords)) {
       is_uncertainty_ = true;
+      is_standard_ = is_standard_ || is_one_of(word, kStandardWords);
       return true;
     }
     if (role_ != Role::kIgnored) {
@@ -217,9 +306,12 @@ class NameReader final {
     const Role role = word.size() > 2 ? main_role(word, other) : Role::kIgnored;
     const bool is_wider = role == Role::kPhase || role == Role::kAmplitude;
     role_ = is_wider && role_ != Role::kPhase ? role : role_;
-    // Of the letter behind "arg" or "of".
-    const bool names_quantity = (last_ == "arg" || last_ == "of" || last_ == "von") &&
-                                main_role(word, other) != Role::kIgnored;
+    // Of the letter behind "arg" or "of", and of the symbol behind a name: "Frequency f". An "A"
+    // may be a unit.
+    const Role symbol = main_role(word, other);
+    const bool is_named = last_ == "arg" || last_ == "of" || last_ == "von";
+    const bool names_quantity =
+        symbol != Role::kIgnored && (is_named || (symbol == role_ && word != "a" && word != "w"));
     return is_wider || names_quantity;
   }
 
@@ -271,13 +363,34 @@ std::string without_coverage(const std::string& name, Column& column) {
   return text;
 }
 
+// "H(f)" is "H", and an angle sign is "arg".
+std::string without_argument(std::string name) {
+  constexpr std::string_view kAngle = "\xE2\x88\xA0";
+  constexpr std::string_view kSymbols = "HhKkSs";
+  constexpr std::string_view kArguments[] = {"(f)",        "(w)",         "(jw)",       "(iw)",
+                                             "(\xCF\x89)", "(j\xCF\x89)", "(i\xCF\x89)"};
+  for (std::size_t at = name.find(kAngle); at != std::string::npos; at = name.find(kAngle)) {
+    name.replace(at, kAngle.size(), "arg ");
+  }
+  for (const std::string_view argument : kArguments) {
+    const std::size_t at = name.find(argument);
+    const bool is_behind_symbol = at != std::string::npos && at > 0 &&
+                                  kSymbols.find(name[at - 1]) != std::string_view::npos &&
+                                  (at == 1 || !is_part_of_word(name[at - 2]));
+    if (is_behind_symbol) {
+      name.erase(at, argument.size());
+    }
+  }
+  return name;
+}
+
 Column read_name(const std::string& cell, Role before) {
   Column column;
   column.name = cell;
   while (!column.name.empty() && (column.name.back() == ',' || column.name.back() == ':')) {
     column.name.pop_back();
   }
-  const std::string name = without_coverage(column.name, column);
+  const std::string name = without_argument(without_coverage(column.name, column));
   const std::vector<Word> words = words_of(name);
   for (const Word& word : words) {
     if (is_one_of(word.text, kOtherWords)) {
@@ -336,6 +449,14 @@ void settle_assumptions(std::vector<Column>& columns) {
 }
 
 }  // namespace
+
+bool is_german(const std::vector<Column>& columns) {
+  return std::any_of(columns.begin(), columns.end(), [](const Column& column) {
+    const std::vector<Word> words = words_of(column.name);
+    return std::any_of(words.begin(), words.end(),
+                       [](const Word& word) { return is_one_of(word.text, kGermanWords); });
+  });
+}
 
 Column read_column_name(const std::string& cell) { return read_name(cell, Role::kIgnored); }
 

@@ -29,6 +29,7 @@ struct Column {
   bool is_omega = false;          ///< The name is that of an angular frequency.
   bool is_lag = false;            ///< The name says lag: positive where the output is late.
   bool is_assumed = false;        ///< An uncertainty that does not say of what.
+  bool is_charge = false;         ///< The name says that it is a charge.
   bool is_relative = false;       ///< The name says relative: without a unit it is a part of 1.
   double coverage = 0.0;          ///< The coverage factor k that the name states; 0 for none.
   bool is_contradictory = false;  ///< It states k twice, with different values.
@@ -36,6 +37,9 @@ struct Column {
 
 /// @returns What one name says. Words that are not known make an ignored column.
 Column read_column_name(const std::string& cell);
+
+/// @returns Whether a name is in German, where "Grad" are degrees.
+bool is_german(const std::vector<Column>& columns);
 
 /// What a header says as a whole.
 struct Header {

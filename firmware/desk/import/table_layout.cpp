@@ -15,11 +15,12 @@ namespace emax::desk {
 
 namespace {
 
-constexpr std::string_view kMinus = "\xE2\x88\x92";        // U+2212.
-constexpr std::string_view kHardSpace = "\xC2\xA0";        // U+00A0.
-constexpr std::string_view kNarrowSpace = "\xE2\x80\xAF";  // U+202F.
-constexpr std::string_view kThinSpace = "\xE2\x80\x89";    // U+2009.
-constexpr std::string_view kApostrophe = "\xE2\x80\x99";   // U+2019.
+constexpr std::string_view kMinus = "\xE2\x88\x92";                    // U+2212.
+constexpr std::string_view kHardSpace = "\xC2\xA0";                    // U+00A0.
+constexpr std::string_view kNarrowSpace = "\xE2\x80\xAF";              // U+202F.
+constexpr std::string_view kThinSpace = "\xE2\x80\x89";                // U+2009.
+constexpr std::string_view kApostrophe = "\xE2\x80\x99";               // U+2019.
+constexpr std::string_view kHalfWidths[] = {"\xC2\xB1", "+/-", "+-"};  // The first is U+00B1.
 
 // Spreadsheets write these for no number; the first ones where a value is not available.
 constexpr std::string_view kNotAvailable[] = {"#n/a", "#nv", "n/a", "na", "-", "--", "---"};
@@ -286,10 +287,20 @@ bool is_comment(std::string_view line) noexcept {
   return line.find_first_not_of(" \t,;\"") == std::string_view::npos;
 }
 
-Cell read_cell(std::string_view text, bool has_decimal_comma) {
-  if (text.empty() || is_one_of(text, kNotAvailable)) {
-    return {};
+namespace {
+
+// Takes a sign of plus and minus off.
+bool drop_half_width(std::string_view& text) noexcept {
+  for (const std::string_view sign : kHalfWidths) {
+    if (text.substr(0, sign.size()) == sign) {
+      text = trim(text.substr(sign.size()));
+      return true;
+    }
   }
+  return false;
+}
+
+Cell read_plain_cell(std::string_view text, bool has_decimal_comma) {
   const PlainNumber plain = NumberCleaner(text, has_decimal_comma).run();
   if (is_word_for_no_number(plain.text)) {
     return {CellKind::kNotFinite};
@@ -303,9 +314,21 @@ Cell read_cell(std::string_view text, bool has_decimal_comma) {
     return {CellKind::kNotFinite};
   }
   if (plain.groups == 1 && plain.are_other_sign && !plain.has_decimal_sign) {
-    return {CellKind::kAmbiguous};
+    return {CellKind::kAmbiguous, parsed.value};
   }
   return {CellKind::kNumber, parsed.value};
+}
+
+}  // namespace
+
+Cell read_cell(std::string_view text, bool has_decimal_comma) {
+  if (text.empty() || is_one_of(text, kNotAvailable)) {
+    return {};
+  }
+  const bool is_half_width = drop_half_width(text);
+  Cell cell = read_plain_cell(text, has_decimal_comma);
+  cell.is_half_width = is_half_width;
+  return cell;
 }
 
 CellWithUnit read_cell_with_unit(std::string_view text, bool has_decimal_comma) {
@@ -322,13 +345,28 @@ CellWithUnit read_cell_with_unit(std::string_view text, bool has_decimal_comma) 
   return result;
 }
 
+namespace {
+
+// A last column may have remarks.
+bool is_remark(const std::string& cell) noexcept {
+  const char first = cell.empty() ? '\0' : lower(cell.front());
+  return (first >= 'a' && first <= 'z') || static_cast<unsigned char>(first) >= 0x80;
+}
+
+}  // namespace
+
 bool is_row(std::string_view line, const TableLayout& layout) {
+  constexpr std::size_t kLeastBeforeRemark = 3;
   const std::vector<std::string> cells = cells_of(without_comment(line), layout.separator);
   std::size_t numbers = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellKind kind = layout.has_units
                               ? read_cell_with_unit(cells[i], layout.has_decimal_comma).cell.kind
                               : read_cell(cells[i], layout.has_decimal_comma).kind;
+    if (kind == CellKind::kText && i + 1 == cells.size() && numbers >= kLeastBeforeRemark &&
+        layout.separator != Separator::kBlanks) {
+      return is_remark(cells[i]);
+    }
     if (kind == CellKind::kText || kind == CellKind::kAmbiguous ||
         (i == 0 && kind != CellKind::kNumber)) {
       return false;

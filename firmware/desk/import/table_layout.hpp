@@ -45,11 +45,13 @@ enum class CellKind : std::uint8_t {
 
 struct Cell {
   CellKind kind = CellKind::kBlank;
-  double value = 0.0;  ///< 0 unless it is a number.
+  double value = 0.0;  ///< 0 unless it is a number; if it is ambiguous, that with thousands.
+  bool is_half_width = false;  ///< "±" or "+/-" stands before it, as before an uncertainty.
 };
 
 /// Reads a number; U+2212 stands for a minus too. Marks of thousands (blanks, apostrophes, or the
-/// other one of point and comma) are read where they cannot be a decimal sign: "1.234,5". Empty,
+/// other one of point and comma) are read where they cannot be a decimal sign: "1.234,5". "±" and
+/// "+/-" may stand before it. Empty,
 /// "-", "--", "---", "n/a", "NA", and "#N/A" or "#NV" of spreadsheets are blank. "nan", "inf",
 /// "infinity" and numbers beyond the range of double are not finite.
 Cell read_cell(std::string_view text, bool has_decimal_comma);
@@ -64,7 +66,8 @@ struct CellWithUnit {
 CellWithUnit read_cell_with_unit(std::string_view text, bool has_decimal_comma);
 
 /// @returns Whether a line is a row of numbers: two cells or more that are a number or blank, the
-/// first of them a number, and another number among them.
+/// first of them a number, and another number among them; behind three of them, but for blanks
+/// between cells, there may be a remark.
 bool is_row(std::string_view line, const TableLayout& layout);
 
 /// @returns The layout that makes most lines rows of numbers, of equal ones the first in the order

@@ -93,6 +93,14 @@ void add_form(const FoundTable& table, std::string& text) {
   if (table.text.encoding != std::string_view("UTF-8")) {
     text += std::string("; ") + table.text.encoding;
   }
+  text += table.is_labview ? "; LabVIEW, X_Value is the frequency" : "";
+  if (table.has_thousands) {
+    text += table.layout.has_decimal_comma ? "; a point in a frequency is one of thousands"
+                                           : "; a comma in a frequency is one of thousands";
+  }
+  if (table.first_footer > 0) {
+    text += "; not read from line " + std::to_string(table.first_footer + 1) + " on";
+  }
   std::string unused;
   for (const Column& column : table.columns) {
     if (column.role == Role::kIgnored && !column.name.empty() && !is_own_column(column.name)) {

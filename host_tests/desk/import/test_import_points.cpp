@@ -629,6 +629,234 @@ TEST(Import, HowMany) {
   EXPECT_EQ(refused(many + "5000,1,0,0.01,1\n").line, emax::kMaxPoints + 1);
 }
 
+TEST(Import, UncertaintiesBehindPlusAndMinus) {
+  for (const char* sign : {"\u00B1", "\u00B1 ", "+/-", "+/- ", "+-"}) {
+    std::string rows;
+    for (const char* f : {"3", "4", "5"}) {
+      rows += std::string(f) + ",2,1," + sign + "0.4," + sign + "0.5\n";
+    }
+    expect_uncertainties("f,A,phase,U(A),U(phase)\n" + rows, 0.2, 0.25);
+  }
+  const ImportedPoints with_units = imported(
+      "f,A,phase,U,U\n3,2,1,\u00B1 20 %,\u00B10.5\u00B0\n4,2,1,\u00B1 20 %,\u00B10.5\u00B0\n"
+      "5,2,1,\u00B1 20 %,\u00B10.5\u00B0\n");
+  expect_point(with_units.points.points()[0], 3.0, 2.0, 1.0, 0.4, 0.5);
+  EXPECT_NE(with_units.understanding.find("percent"), std::string::npos);
+  // Nothing else has such a sign, and no uncertainty is below 0.
+  EXPECT_EQ(refused(std::string(kHeader) + kRows + "60,1,\u00B13,0.1,1\n").problem,
+            "phase_deg has a sign of plus and minus, as an uncertainty: \"\u00B13\" (column 3)");
+  EXPECT_EQ(refused(std::string(kHeader) + kRows + "60,1,3,\u00B1-0.1,1\n").problem,
+            "u_amplitude is zero or negative: \"\u00B1-0.1\" (column 4)");
+}
+
+TEST(Import, SymbolsOfResponses) {
+  for (const char* header :
+       {"f,|H|,arg(H),U(|H|),U(arg(H))", "f,|H(f)|,arg(H(f)),U,U", "f,abs(H),arg H,u(H),u(arg H)",
+        "f,|H(j\u03C9)|,\u2220H(j\u03C9),U,U", "Frequency f,Sensitivity S,Phase phi,U,U",
+        "Frequency (f) [Hz],Sensitivity (S),Phase (\u03C6) [deg],U,U"}) {
+    expect_uncertainties(std::string(header) + "\n" + kPlainRows, 0.2, 0.25);
+  }
+  // A real and an imaginary part are neither.
+  EXPECT_EQ(refused(std::string("f,Re(H),Im(H),U,U\n") + kPlainRows).problem,
+            "the header has no name for the amplitude");
+}
+
+TEST(Import, NamesInOtherLanguages) {
+  for (const char* header :
+       {"Frequenz in Hz,Betrag des \u00DCbertragungskoeffizienten in V/(m/s\u00B2),"
+        "Phasenverschiebung in \u00B0,erweiterte Messunsicherheit,erweiterte Messunsicherheit",
+        "Messfrequenz / Hz,\u00DCbertragungskoeffizient / V/(m/s\u00B2),"
+        "Phasenverschiebungswinkel / \u00B0,Erweiterte Messunsicherheit / V/(m/s\u00B2),"
+        "Erweiterte Messunsicherheit / \u00B0",
+        "Frequenz f [Hz],Spannungs\u00FCbertragungskoeffizient Sua [V/(m/s\u00B2)],"
+        "Phasenverschiebung \u03C6ua [\u00B0],Messunsicherheit U (k=2),Messunsicherheit U (k=2)",
+        "Frequenza (Hz),Sensibilit\u00E0 (V/(m/s\u00B2)),Fase (\u00B0),Incertezza,Incertezza",
+        "FREQUENZA,SENSIBILIT\u00C0,SFASAMENTO,INCERTEZZA ESTESA,INCERTEZZA ESTESA",
+        "Fr\u00E9quence,Sensibilit\u00E9,Phase,Incertitude,Incertitude",
+        "Fr\u00E9quence,Module,D\u00E9phasage,Incertitude \u00E9largie,Incertitude \u00E9largie",
+        "Frecuencia,Sensibilidad,Fase,Incertidumbre,Incertidumbre",
+        "Frecuencia,M\u00F3dulo,Desfase,Incertidumbre expandida,Incertidumbre de la fase"}) {
+    expect_uncertainties(std::string(header) + "\n" + kPlainRows, 0.2, 0.25);
+  }
+  EXPECT_EQ(refused(std::string("Frequenz,Querempfindlichkeit,Phase,U,U\n") + kPlainRows).problem,
+            "the header has no name for the amplitude");
+}
+
+TEST(Import, StandardUncertaintiesByTheirNames) {
+  for (const char* names : {"Combined standard uncertainty,Combined standard uncertainty",
+                            "Kombinierte Standardunsicherheit,Kombinierte Standardmessunsicherheit",
+                            "Incertitude-type compos\u00E9e,Incertitude type",
+                            "Incertezza tipo,Incertezza tipo composta",
+                            "Incertidumbre t\u00EDpica,Incertidumbre est\u00E1ndar combinada"}) {
+    const std::string text = std::string("f,A,phase,") + names + "\n" + kPlainRows;
+    expect_uncertainties(text, 0.4, 0.5);
+    EXPECT_NE(imported(text).understanding.find("standard uncertainties"), std::string::npos);
+  }
+}
+
+TEST(Import, Charges) {
+  constexpr double kG = 9.80665;
+  for (const char* header :
+       {"f,Charge sensitivity [pC/g],phase,U [pC/g],U [deg]",
+        "f,Ladungs\u00FCbertragungskoeffizient Sqa / pC/g,Phasenverschiebung,U / pC/g,U / \u00B0",
+        "f,Charge Sensitivity,Phase,U,U\nHz,pC/g,deg,pC/g,deg"}) {
+    const ImportedPoints found = imported(std::string(header) + "\n" + kPlainRows);
+    expect_point(found.points.points()[0], 3.0, 2.0 / kG, 1.0, 0.4 / kG, 0.5);
+    EXPECT_NE(found.understanding.find("1 pC is taken as 1 V"), std::string::npos);
+  }
+  const std::string table = std::string("f,Charge sensitivity,phase,U [%],U [deg]\n") + kPlainRows;
+  const ImportError error = refused(table);
+  EXPECT_EQ(error.problem, "\"Charge sensitivity\" is a charge, and its unit is not stated");
+  EXPECT_NE(error.expectation.find("--input-units"), std::string::npos);
+  ImportOptions options;
+  ASSERT_TRUE(take_input_units("pC/g", options));
+  EXPECT_NEAR(imported(table, options).points.points()[0].amplitude, 2.0 / kG, 1e-15);
+  EXPECT_EQ(refused(std::string("f,Charge sensitivity [mV/g],phase,U [%],U [deg]\n") + kPlainRows)
+                .problem,
+            "\"Charge sensitivity [mV/g]\" is a charge, and its unit is one of voltage");
+}
+
+// 400 gon are a turn; German degrees are "Grad", and others call the gon so.
+TEST(Import, GonAndGrad) {
+  const auto with_unit = [](const char* names, const char* unit) {
+    return std::string(names) + ",phase [" + unit + "],U [%],U [" + unit + "]\n" + kPlainRows;
+  };
+  expect_point(imported(with_unit("f,A", "gon")).points.points()[0], 3.0, 2.0, 0.9, 0.008, 0.45);
+  expect_point(imported(with_unit("Frequenz,Empfindlichkeit", "Grad")).points.points()[0], 3.0, 2.0,
+               1.0, 0.008, 0.5);
+  const ImportError error = refused(with_unit("f,A", "grad"));
+  EXPECT_NE(error.problem.find("may be degrees, as in German, or gon"), std::string::npos);
+  EXPECT_EQ(error.expectation, "expected deg or gon in its place");
+  ImportOptions options;
+  EXPECT_FALSE(take_input_units("grad", options));
+  EXPECT_FALSE(take_uncertainty("1%,1grad", options));
+  EXPECT_TRUE(take_input_units("gon", options));
+  EXPECT_TRUE(take_uncertainty("1%,1gon", options));
+}
+
+std::string with_frequencies(const std::vector<const char*>& frequencies, char separator) {
+  std::string text = std::string("f") + separator + "A" + separator + "phase" + separator + "U" +
+                     separator + "U\n";
+  for (const char* f : frequencies) {
+    for (const char* cell : {f, "2.5", "1", "0.4"}) {
+      text += std::string(cell) + separator;
+    }
+    text += "0.5\n";
+  }
+  return text;
+}
+
+TEST(Import, ThousandsThatTheOrderTells) {
+  const struct {
+    std::vector<const char*> frequencies;
+    double last;
+  } tables[] = {
+      {{"500", "800", "1,000", "1,250"}, 1250.0},
+      {{"20", "1,000", "2,000", "10,000"}, 10000.0},
+      {{"500", "800", "1 000", "1 250"}, 1250.0},
+  };
+  for (const auto& table : tables) {
+    for (const char separator : {';', '\t'}) {
+      const ImportedPoints found = imported(with_frequencies(table.frequencies, separator));
+      EXPECT_EQ(found.points.points()[table.frequencies.size() - 1].frequency_hz, table.last);
+      EXPECT_EQ(found.points.points()[0].frequency_hz, std::stod(table.frequencies[0]));
+    }
+  }
+  EXPECT_NE(imported(with_frequencies({"500", "800", "1,000"}, ';'))
+                .understanding.find("; a comma in a frequency is one of thousands"),
+            std::string::npos);
+  // Both ways they are in order, or neither is.
+  for (const auto& open : {std::vector<const char*>{"0.5", "1,000", "2,000"},
+                           std::vector<const char*>{"30", "1,040", "50"}}) {
+    EXPECT_NE(refused(with_frequencies(open, ';')).problem.find("has a comma among decimal points"),
+              std::string::npos);
+  }
+  EXPECT_NE(refused(with_frequencies({"1,000", "2,000", "3,000"}, ';')).problem, "");
+  // No other column tells which sign is the decimal one.
+  const auto integers = [](const std::string& f1, const std::string& f2, const std::string& f3) {
+    return "f;A;phase;U;U\n" + f1 + ";2;1;1;1\n" + f2 + ";2;1;1;1\n" + f3 + ";2;1;1;1\n";
+  };
+  EXPECT_EQ(imported(integers("800", "1,000", "1,250")).points.points()[2].frequency_hz, 1250.0);
+  EXPECT_EQ(refused(integers("1,000", "1,250", "1,600")).problem,
+            "the comma in the frequency may be a decimal sign or a mark of thousands");
+  EXPECT_EQ(imported(integers("0,5", "1,000", "1,250")).points.points()[2].frequency_hz, 1.25);
+  EXPECT_EQ(imported(integers("1,000", "12,5", "20")).points.points()[1].frequency_hz, 12.5);
+  // A point where the rest has commas.
+  const ImportedPoints found = imported(
+      "f;A;phase;U;U\n500;2,5;1;0,4;0,5\n800;2,5;1;0,4;0,5\n1.000;2,5;1;0,4;0,5\n"
+      "1.250;2,5;1;0,4;0,5\n");
+  EXPECT_EQ(found.points.points()[3].frequency_hz, 1250.0);
+}
+
+TEST(Import, WordsThatEndATable) {
+  const std::string table = std::string("f,A,phase,U(A),U(phase)\n") + kPlainRows;
+  for (const char* words : {"Page 1 of 1", "End of data", "*** End of data ***", "--- end ---",
+                            "Page 1 of 1,,,,", "End of data\nPage 1/1", "Page,1,of,1"}) {
+    const ImportedPoints found = imported(table + words + "\n");
+    EXPECT_EQ(found.points.size(), 3U);
+    EXPECT_NE(found.understanding.find("; not read from line 5 on"), std::string::npos) << words;
+    EXPECT_EQ(imported(table + words + "\n\nMeasured by,N. N.\n").points.size(), 3U);
+  }
+  const std::string blanks = "f A phase U U\n3 2 1 0.4 0.5\n4 2 1 0.4 0.5\n5 2 1 0.4 0.5\n";
+  EXPECT_EQ(imported(blanks + "Page 1 of 1\n").points.size(), 3U);
+  // Rows with a fault are none of them.
+  for (const char* row : {"x,2,1", "6OO,2,1,0.4", "abc,2,1,0.4,0.5", "abc,2,1,0.4", "6,2,1"}) {
+    EXPECT_EQ(refused(table + row + "\n").line, 5U) << row;
+  }
+}
+
+std::string labview(const std::string& dimension, const std::string& names, const char* row_end) {
+  std::string text =
+      "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\n"
+      "Decimal_Separator\t.\nMulti_Headings\tNo\nX_Columns\tOne\nTime_Pref\tAbsolute\n"
+      "Operator\tk = 1\nDate\t2024/03/05\nTime\t14:03:11.2345\n***End_of_Header***\t\n\t\n"
+      "Channels\t4\t\t\t\t\nSamples\t3\t3\t3\t3\t\nDate\t2024/03/05\t2024/03/05\t\n"
+      "Y_Unit_Label\tmV/g\tdeg\t%\tmrad\t\nX_Dimension\t" +
+      dimension + "\t" + dimension +
+      "\t\nX0\t0.0E+0\t0.0E+0\t0.0E+0\t0.0E+0\t\nDelta_X\t1.0\t1.0\t1.0\t1.0\t\n"
+      "***End_of_Header***\t\t\t\t\t\nX_Value\t" +
+      names + "\n";
+  for (const char* f : {"3", "4", "5"}) {
+    text += std::string(f) + "\t2\t1\t20\t0.5" + row_end + "\n";
+  }
+  return text;
+}
+
+TEST(Import, FilesOfLabview) {
+  constexpr double kUnit = 1e-3 / 9.80665;
+  const std::string names = "Amplitude\tPhase\tU amplitude\tU phase\tComment";
+  for (const char* row_end : {"", "\t", "\tfine"}) {
+    const ImportedPoints found = imported(labview("Frequency", names, row_end));
+    ASSERT_EQ(found.points.size(), 3U);
+    expect_point(found.points.points()[0], 3.0, 2.0 * kUnit, 1.0, 0.4 * kUnit, 0.5e-3 / kDegree);
+    EXPECT_NE(found.understanding.find("LabVIEW, X_Value is the frequency"), std::string::npos);
+  }
+  EXPECT_EQ(refused(labview("Time", names, "")).problem,
+            "X_Value of this LabVIEW file is no frequency");
+  const ImportError error =
+      refused(labview("Frequency", "Untitled\tUntitled 1\tUntitled 2\tUntitled 3\tComment", ""));
+  EXPECT_EQ(error.problem, "the header has no name for the amplitude");
+  EXPECT_EQ(error.line, 22U);
+}
+
+TEST(Import, RemarksInALastColumn) {
+  const ImportedPoints found = imported(
+      "f,A,phase,U(A),U(phase),remark\n3,2,1,0.4,0.5,ok\n4,2,1,0.4,0.5,\n5,2,1,0.4,0.5,noisy\n");
+  ASSERT_EQ(found.points.size(), 3U);
+  expect_point(found.points.points()[2], 5.0, 2.0, 1.0, 0.4, 0.5);
+  EXPECT_NE(found.understanding.find("not used: remark"), std::string::npos);
+  EXPECT_EQ(refused("f,A,phase,U(A),U(phase)\n3,2,1,0.4,x\n4,2,1,0.4,0.5\n5,2,1,0.4,0.5\n").problem,
+            "U(phase) is not a number: \"x\" (column 5)");
+}
+
+TEST(Import, AUnitInSomeRowsOnly) {
+  const ImportError error = refused(std::string(kHeader) + kRows + "60,4.5,-5,1%,3\n");
+  EXPECT_EQ(error.problem, "u_amplitude has a unit, and other rows have none: \"1%\" (column 4)");
+  EXPECT_EQ(error.expectation,
+            "expected the unit of all in the name of the column, such as \"u_amplitude [%]\"");
+  EXPECT_EQ(error.line, 5U);
+}
+
 // A header that never ends is none; its names would grow with each line.
 TEST(Import, HeadersHaveAnEnd) {
   std::string text = "Frequency,Sensitivity,,Phase,\n";
