@@ -9,6 +9,7 @@ import cmath
 import json
 import math
 import random
+import re
 
 from program_test import DATA, QUICK, ProgramTest, main
 
@@ -217,6 +218,47 @@ class TablesOfPiezos(Tables, ProgramTest):
                 arguments = [command, "--points", TABLES / name, "--damping", damping, "--out", "out"]
                 self.refuse(arguments, "--damping: ", words)
 
+    def test_magnitudes_far_below_the_resonance(self):
+        S, f0, beta = 0.0102, 55000.0, 0.01
+        rows = []
+        for i in range(20):
+            f = 20.0 * 500.0 ** (i / 19.0)
+            amplitude = S / abs(complex(1.0 - (f / f0) ** 2, 2.0 * beta * f / f0))
+            rows.append(f"{f!r},{amplitude!r},{0.001 * amplitude!r}")
+        table = self.write(["f_hz,amplitude,u_amplitude", *rows])
+        found = json.loads(self.succeed("report", "--points", table, *QUICK, "--json"))["fit"]
+        self.assertEqual(found["determined"], "S")
+        # |K| knows (2 - 4 beta^2)/f0^2 there. What is of higher order moves f0 by less than a thousandth.
+        wanted = f0 * math.sqrt((1.0 - 2e-8) / (1.0 - 2.0 * beta * beta))
+        low = float(re.search(r"from (\d+) Hz \(U = \d+ Hz, k = 2\) for beta = 0\.0001", found["cause"])[1])
+        self.assertAlmostEqual(low / wanted, 1.0, delta=1e-3)
+        text = " ".join(self.succeed("report", "--points", table, *QUICK, "--out", "out").split())
+        self.assertIn(f"Note: {found['cause']}", text)
+        self.assertEqual(" ".join((self.directory / "out/report.txt").read_text().split()), text)
+        # Above 1/sqrt(2) there is no resonance that magnitudes could rise to.
+        for command in ["report", "certify"]:
+            self.refuse([command, "--points", table, "--damping", "0.999"],
+                        "--damping: no resonance fits these magnitudes with so large a damping", "expected at most 0.")
+
+    def test_units_that_are_not_likely(self):
+        mv_per_g = [f"{f!r},{9806.65 * a!r},{p!r},{9806.65 * ua!r},{up!r}" for f, a, p, ua, up, *_ in table_rows()]
+        percent = [f"{f!r},{a!r},{p!r},1,1" for f, a, p, *_ in table_rows()]
+        for rows, words in [(mv_per_g, "V/(m/s2) is more than usual accelerometers have; where it is mV/g"),
+                            (percent, "where they are in percent, name them so")]:
+            table = self.write([TablesThereAndBack.NAMES, *rows])
+            result = self.run_program("report", "--points", table, *QUICK)
+            self.assertEqual(result.returncode, 0)
+            self.assert_one_line(result.stderr, f"{table}: ", words)
+            self.assertIn(words, " ".join(result.stdout.decode().split()))
+        # Nothing is asked where the unit is named.
+        named = self.write(["f_hz,amplitude [mV/g],phase_deg,u_amplitude,u_phase_deg", *mv_per_g])
+        self.succeed("report", "--points", named, *QUICK)
+        self.succeed("report", "--points", self.write([TablesThereAndBack.NAMES, *mv_per_g]), "--input-units", "mV/g",
+                     *QUICK)
+        # Where such uncertainties leave no device, too.
+        rows = [f"{f!r},{a!r},{p!r},1,{up!r}" for f, a, p, _, up, *_ in table_rows(TABLES / "piezo_00.csv")]
+        self.refuse_points([TablesThereAndBack.NAMES, *rows], None, "where they are in percent, name them so")
+
     def test_points_far_below_the_resonance(self):
         results = self.fit("handheld_160hz.csv")
         # 0.5 % (1 sigma) at each of five points.
@@ -317,8 +359,8 @@ class WarningsOfReports(Tables, ProgramTest):
         self.assertTrue((self.directory / "out/report.txt").read_text().startswith("SIMULATION: "))
 
 
-def table_rows():
-    lines = (TABLES / "plain.csv").read_text().splitlines()[1:]
+def table_rows(table=TABLES / "plain.csv"):
+    lines = table.read_text().splitlines()[1:]
     return [[float(cell) for cell in line.split(",")] for line in lines]
 
 

@@ -210,7 +210,8 @@ Problem find_energy(const ReportOptions& options, const ImportedPoints& imported
   app::Evaluation evaluation(results, workspace);
   Status status = start(options, imported, evaluation);
   const bool has_points = !options.points_path.empty();
-  if (Problem problem = has_points ? check_given_damping(results, options) : Problem{}) {
+  if (Problem problem =
+          has_points ? check_given_damping(results, options, imported.points) : Problem{}) {
     return problem;
   }
   ConsoleProgress progress;
@@ -229,7 +230,7 @@ Problem find_energy(const ReportOptions& options, const ImportedPoints& imported
   if (status == Status::kOk) {
     return has_points ? judge_fit(options, evaluation, results) : Problem{};
   }
-  return describe_failure(results, options, imported.names_phase_unit);
+  return describe_failure(results, options, imported.names_phase_unit, imported.doubt);
 }
 
 // The same, where nobody has asked for a time with the longest one that the proof has room for.
@@ -665,7 +666,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.evaluation = &evaluation;
   result.default_time_s = default_s;
   if (evaluation.source == app::Source::kPoints) {
-    result.cause = cause_of(evaluation.fit, imported.names_phase_unit);
+    result.cause = joined(imported.doubt, cause_of(evaluation.fit, imported.names_phase_unit));
   }
   result.proven.box = box.get();
   result.proven.model = &model;

@@ -7,6 +7,7 @@
 #include "emax/app/report/report.hpp"
 
 #include "desk/cli/stop_request.hpp"
+#include "desk/compare/name_lines.hpp"
 #include "desk/page/html_page.hpp"
 #include "desk/pictures/pictures.hpp"
 
@@ -166,10 +167,26 @@ Problem write_fault_files(const app::ReportContext& context, const app::Evaluati
   return problem ? problem : files.commit();
 }
 
+void write_sensitivity_text(const app::EvaluationResults& results,
+                            const app::ReportContext& context, app::TextWriter& out) {
+  constexpr double kWidth = 94.0;
+  constexpr std::size_t kMostLines = 8;
+  write_sensitivity_report(results, context, out);
+  // Magnitudes alone have no chi-square there, beside which the cause is written.
+  if (context.cause == nullptr || results.fit.result().chi2 > 0.0) {
+    return;
+  }
+  out.line();
+  for (const std::string& line :
+       wrapped(std::string("Note: ") + context.cause, kWidth, kMostLines)) {
+    out.text("  ").text(line.c_str()).line();
+  }
+}
+
 Problem write_sensitivity_files(const app::EvaluationResults& results,
                                 const app::ReportContext& context, OutputFiles& files) {
   Problem problem = files.add(
-      "report.txt", [&](app::TextWriter& out) { write_sensitivity_report(results, context, out); });
+      "report.txt", [&](app::TextWriter& out) { write_sensitivity_text(results, context, out); });
   problem = problem ? problem : files.add("results.json", [&](app::TextWriter& out) {
     write_sensitivity_json(results, context, out);
   });

@@ -40,6 +40,11 @@ std::string write_points_alone(const app::EvaluationResults* results,
 Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,
                           OutputFiles& files);
 
+/// The report on points that determine the sensitivity alone, with what `context` says of the
+/// damping.
+void write_sensitivity_text(const app::EvaluationResults& results,
+                            const app::ReportContext& context, app::TextWriter& out);
+
 /// The files of points that determine the sensitivity alone: report.txt and results.json. What an
 /// earlier run has left of the others goes.
 Problem write_sensitivity_files(const app::EvaluationResults& results,

@@ -7,6 +7,7 @@
 #include "emax/base/units.hpp"
 
 #include "desk/import/conversions.hpp"
+#include "desk/import/doubts.hpp"
 #include "desk/import/find_table.hpp"
 #include "desk/import/merge_rows.hpp"
 #include "desk/import/read_rows.hpp"
@@ -141,6 +142,7 @@ ImportError import_points(std::string_view text, const ImportOptions& options,
     return error;
   }
   imported.understanding = understanding_of(table, conversions, options, merged);
+  imported.doubt = doubts_of(table, conversions, options, merged.rows);
   return {};
 }
 

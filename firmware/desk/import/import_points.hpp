@@ -19,6 +19,7 @@ struct ImportedPoints {
   std::vector<std::size_t> lines;  ///< The line that each point came from, from 1.
   /// What was understood: "read as Hz, mV/g, deg, percent; 20 points; tabs, decimal comma".
   std::string understanding;
+  std::string doubt;  ///< Sentences that ask about units which nobody has named; else empty.
   bool names_phase_unit = false;  ///< Degrees or radians are not just assumed.
   bool states_common = false;     ///< The table itself says what all its points have in common.
 };

@@ -12,14 +12,11 @@
 
 #include "desk/cli/console.hpp"
 #include "desk/files/text_file.hpp"
+#include "desk/report/damping_words.hpp"
 #include "desk/report/fit_causes.hpp"
 
 namespace emax::desk {
 
-namespace {
-
-// Sentences of the library, with what they add in brackets, as the middle of a line: small letters
-// at the start, no full stops.
 std::string in_line(const std::string& text) {
   std::string line;
   bool starts = true;
@@ -34,6 +31,8 @@ std::string in_line(const std::string& text) {
   }
   return line;
 }
+
+namespace {
 
 // What has to be changed: an option, or the device.
 std::string culprit(const app::EvaluationResults& evaluation, const ReportOptions& options) {
@@ -57,7 +56,7 @@ std::string culprit(const app::EvaluationResults& evaluation, const ReportOption
 }  // namespace
 
 Problem describe_failure(const app::EvaluationResults& evaluation, const ReportOptions& options,
-                         bool is_phase_unit_named) {
+                         bool is_phase_unit_named, const std::string& doubt) {
   const app::Failure& failure = evaluation.failure;
   const bool is_inverted = failure.status == Status::kInvertedPolarity;
   StringSink sentence;
@@ -77,12 +76,13 @@ Problem describe_failure(const app::EvaluationResults& evaluation, const ReportO
     const std::string cause = cause_of(evaluation.fit, is_phase_unit_named);
     line += cause.empty() ? "" : "; " + in_line(cause);
   }
+  line += doubt.empty() ? "" : "; " + in_line(doubt);
   // What the bench gave is no input of the user's.
   return who == "measurement" ? fault(line) : bad_input(line);
 }
 
-Problem check_given_damping(const app::EvaluationResults& evaluation,
-                            const ReportOptions& options) {
+Problem check_given_damping(const app::EvaluationResults& evaluation, const ReportOptions& options,
+                            const FrequencyResponse& points) {
   const WlspFit& fit = evaluation.fit.result();
   if (!(options.damping > 0.0) || fit.is_damping_given) {
     return {};
@@ -93,7 +93,17 @@ Problem check_given_damping(const app::EvaluationResults& evaluation,
         "use; expected points nearer to the resonance, or no --damping");
   }
   if (evaluation.judgement.determined == Determined::kNothing) {
-    return {};
+    const FrequencyByDamping found = frequency_by_damping(points);
+    if (!(found.f0_hz > 0.0)) {
+      return {};
+    }
+    const std::string largest = std::to_string(found.damping).substr(0, 4);
+    return bad_input(options.damping > found.damping
+                         ? "--damping: no resonance fits these magnitudes with so large a damping; "
+                           "expected at most " +
+                               largest
+                         : "--damping: the fit of these magnitudes comes to no rest with this "
+                           "damping; expected another one nearby");
   }
   StringSink sink;
   app::TextWriter out(sink);

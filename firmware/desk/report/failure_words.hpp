@@ -4,6 +4,7 @@
 #include <string>
 
 #include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/identify/frequency_response.hpp"
 
 #include "desk/cli/options.hpp"
 #include "desk/cli/problem.hpp"
@@ -14,11 +15,17 @@ namespace emax::desk {
 /// input that has to be changed; a fault where the bench has given the points.
 ///
 /// @param[in] is_phase_unit_named As for `cause_of()`.
+/// @param[in] doubt               Of the table, as `ImportedPoints` has it.
 Problem describe_failure(const app::EvaluationResults& evaluation, const ReportOptions& options,
-                         bool is_phase_unit_named);
+                         bool is_phase_unit_named, const std::string& doubt);
 
 /// @returns A problem where --damping was given and the points do not leave that damping open, or
-/// leave f0 open too.
-Problem check_given_damping(const app::EvaluationResults& evaluation, const ReportOptions& options);
+/// leave f0 open too, or are magnitudes that fit no such damping.
+Problem check_given_damping(const app::EvaluationResults& evaluation, const ReportOptions& options,
+                            const FrequencyResponse& points);
+
+/// @returns Sentences of the library as the middle of a line: small letters at the start, no full
+/// stops.
+std::string in_line(const std::string& text);
 
 }  // namespace emax::desk

@@ -140,6 +140,10 @@ std::string cause_of_measured(const Wlsp& fit) {
   return lone.frequencies_hz.empty() ? "" : words_of_lone_points(lone);
 }
 
+std::string joined(const std::string& first, const std::string& second) {
+  return first + (first.empty() || second.empty() ? "" : " ") + second;
+}
+
 std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
   const auto workspace = std::make_unique<DiagnosisWorkspace>();
   const FitDiagnosis diagnosis = diagnose(fit, *workspace);

@@ -19,4 +19,7 @@ std::string cause_of(const Wlsp& fit, bool is_phase_unit_named);
 /// if more than an eighth of the points, or than four, are off.
 std::string cause_of_measured(const Wlsp& fit);
 
+/// @returns The sentences of both.
+std::string joined(const std::string& first, const std::string& second);
+
 }  // namespace emax::desk

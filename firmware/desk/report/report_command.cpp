@@ -27,6 +27,7 @@
 #include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
 #include "desk/report/bench_job.hpp"
+#include "desk/report/damping_words.hpp"
 #include "desk/report/failure_words.hpp"
 #include "desk/report/figure_mark.hpp"
 #include "desk/report/fit_causes.hpp"
@@ -50,7 +51,7 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
   if (!options.instrument.empty()) {
     const Problem problem = job.measure_with_instrument(options, progress);
     const bool is_refused = !problem && job.sequencer().evaluation().status() != Status::kOk;
-    return is_refused ? describe_failure(job.sequencer().evaluation(), options, true) : problem;
+    return is_refused ? describe_failure(job.sequencer().evaluation(), options, true, "") : problem;
   }
   if (options.measures()) {
     return job.start(options);
@@ -68,10 +69,10 @@ Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& impor
   }
   const bool is_refused =
       static_cast<bool>(sequencer.evaluate(options.settings, app::Goal::kReport));
-  const Problem problem = check_given_damping(sequencer.evaluation(), options);
-  return problem || !is_refused
-             ? problem
-             : describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
+  const Problem problem = check_given_damping(sequencer.evaluation(), options, imported.points);
+  return problem || !is_refused ? problem
+                                : describe_failure(sequencer.evaluation(), options,
+                                                   imported.names_phase_unit, imported.doubt);
 }
 
 // Of a criterion whose error rounding hides, as the sensor is nearly the filter: the in-band error
@@ -133,7 +134,8 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {
-    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit);
+    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit,
+                               imported.doubt);
     problem = work_in_band(options, job, progress, std::move(problem), remark);
   }
   return problem;
@@ -246,7 +248,7 @@ bool is_sensitivity_alone(const app::EvaluationResults& evaluation, const Report
 // Points that determine S alone: its value is a result.
 Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) {
   const auto text = [&](app::TextWriter& out) {
-    write_sensitivity_report(results.evaluation, results.context, out);
+    write_sensitivity_text(results.evaluation, results.context, out);
   };
   const auto object = [&](app::TextWriter& out) {
     write_sensitivity_json(results.evaluation, results.context, out);
@@ -257,6 +259,18 @@ Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) 
     return problem;
   }
   return json ? print(object) : print(text);
+}
+
+std::string cause_of_table(const app::EvaluationResults& evaluation,
+                           const ImportedPoints& imported) {
+  return joined(imported.doubt, cause_of(evaluation.fit, imported.names_phase_unit));
+}
+
+// Where the eyes are, too.
+Problem remark_on_table(const ReportOptions& options, const ImportedPoints& imported) {
+  const std::string& doubt = imported.doubt;
+  return {ExitStatus::kDone,
+          doubt.empty() ? "" : name_of_input(options.points_path) + ": " + in_line(doubt)};
 }
 
 // Before the long work: the labels of a digital certificate, and whether there is room for it.
@@ -301,9 +315,11 @@ Problem run_report(Span<const std::string_view> arguments) {
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
   const bool is_measured = options.measures() && evaluation.has_fit();
-  const std::string cause = has_table     ? cause_of(evaluation.fit, imported.names_phase_unit)
+  const std::string cause = has_table     ? cause_of_table(evaluation, imported)
                             : is_measured ? cause_of_measured(evaluation.fit)
-                                          : "";
+                            : is_sensitivity_alone(evaluation, options)
+                                ? words_on_damping(frequency_by_damping(imported.points))
+                                : "";
   const app::Measurement measurement = bench.measurement();
   app::ReportContext context = {options.points_path.empty() ? nullptr : points_name.c_str(),
                                 options.measures() ? &measurement : nullptr,
@@ -356,7 +372,8 @@ Problem run_report(Span<const std::string_view> arguments) {
   if (!problem && remark.line.empty()) {
     remark = bench.unstruck();
   }
-  return problem ? problem : both(criterion_changed, remark);
+  const Problem of_table = remark_on_table(options, imported);
+  return problem ? problem : both(of_table, both(criterion_changed, remark));
 }
 
 std::string help_on_report() {
