@@ -213,7 +213,7 @@ class TableFinder final {
         words_begin = are_all_words ? i - 1 : words_begin;
       }
     }
-    if (words_begin < table_.end_row) {
+    if (words_begin < table_.end_row && words_begin > table_.first_row) {
       table_.end_row = words_begin;
       table_.first_footer = words_begin;
     }

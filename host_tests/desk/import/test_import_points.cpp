@@ -799,6 +799,8 @@ TEST(Import, WordsThatEndATable) {
   }
   const std::string blanks = "f A phase U U\n3 2 1 0.4 0.5\n4 2 1 0.4 0.5\n5 2 1 0.4 0.5\n";
   EXPECT_EQ(imported(blanks + "Page 1 of 1\n").points.size(), 3U);
+  // Words where the rows should be end nothing.
+  EXPECT_EQ(refused("f,A,phase,U(A),U(phase)\nnothing here\n").line, 2U);
   // Rows with a fault are none of them.
   for (const char* row : {"x,2,1", "6OO,2,1,0.4", "abc,2,1,0.4,0.5", "abc,2,1,0.4", "6,2,1"}) {
     EXPECT_EQ(refused(table + row + "\n").line, 5U) << row;
