@@ -124,6 +124,34 @@ class DigitalCertificate(ProgramTest):
                     self.assertAlmostEqual(found[name][1] / expanded, 1.0, delta=1e-12)
                 self.assertEqual(found[name][2], unit)
 
+    def test_interval_in_the_place_of_U(self):
+        """Where U says too little, as with a well damped sensor of high f0, the schema's interval stands in its place, and says so."""
+        root = self.certificate("--model", "1,8000,0.7,0.003,80,0.02", "--criterion", "band", *options_of(LABELS))
+        results = json.loads((self.directory / "out/results.json").read_text())
+        matched, known = results["band"]["matched"], results["uncertainty"]
+        self.assertIsNotNone(matched["instead_of_U_percent"])
+        found = {quantity.find(f"{DCC}name/{DCC}content").text: quantity for quantity in root.iter(DCC + "quantity")}
+        energy, percent = results["energy"]["E"], matched["rms_percent"]
+        expected = {
+            "Largest energy of the in-band error of any signal within the limit":
+                (energy, known["u"], min(known["shortest"][0], energy), max(known["shortest"][1], energy)),
+            "Worst rms error in band, constant delay taken out, of sensitivity times limit":
+                (percent, matched["u_percent"], *matched["instead_of_U_percent"]),
+        }
+        for name, numbers in expected.items():
+            with self.subTest(name):
+                self.assertIn("in the place of U", found[name].find(f"{DCC}description/{DCC}content").text)
+                real = found[name].find(SI + "real")
+                self.assertIsNone(real.find(SI + "expandedUnc"))
+                interval = real.find(SI + "coverageInterval")
+                parts = [real.find(SI + "value"), *(interval.find(SI + part) for part in ["standardUnc", "intervalMin", "intervalMax"])]
+                for part, number in zip(parts, numbers, strict=True):
+                    self.assertAlmostEqual(float(part.text), number, delta=1e-12 * number)
+                self.assertEqual(interval.find(SI + "coverageProbability").text, "0.95")
+        with_delay = found["Worst rms error in band, with its delay, of sensitivity times limit"]
+        self.assertIsNone(with_delay.find(DCC + "description"))
+        self.assertIsNotNone(with_delay.find(f"{SI}real/{SI}expandedUnc"))
+
     def test_response_is_the_table(self):
         root = self.certificate(*TABLE, *options_of(LABELS))
         lists = {quantity.find(f"{DCC}name/{DCC}content").text: quantity.find(SI + "realListXMLList")

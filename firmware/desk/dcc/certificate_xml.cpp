@@ -132,17 +132,44 @@ void add_administrative_data(XmlWriter& xml, const app::ReportContext& context) 
 
 // Results
 
-// A value; without an expanded uncertainty where that is 0 or not known.
-void add_quantity(XmlWriter& xml, const char* name, double value, double expanded,
-                  const char* unit) {
+// What is known of a value: nothing, U, or the interval that stands in its place.
+struct Known {
+  double u = 0.0;
+  bool is_one_sided = false;
+  CoverageInterval interval = {};
+  double probability = 0.0;
+};
+
+constexpr const char* kInsteadOfU =
+    "The coverage interval stands in the place of U, which says too little here: the value is near "
+    "one end of what the uncertainties allow.";
+
+// Nothing where the uncertainty is 0 or not known.
+void add_known(XmlWriter& xml, const Known& known) {
+  if (!(known.u > 0.0) || !std::isfinite(known.u)) {
+    return;
+  }
+  if (known.is_one_sided) {
+    xml.open("si:coverageInterval").element("si:standardUnc", number(known.u));
+    xml.element("si:intervalMin", number(known.interval.low));
+    xml.element("si:intervalMax", number(known.interval.high));
+    xml.element("si:coverageProbability", number(known.probability)).close();
+    return;
+  }
+  xml.open("si:expandedUnc").element("si:uncertainty", number(kCoverageFactor * known.u));
+  xml.element("si:coverageFactor", "2").element("si:coverageProbability", "0.95");
+  xml.element("si:distribution", "normal").close();
+}
+
+void add_quantity(XmlWriter& xml, const char* name, double value, const char* unit,
+                  const Known& known = {}) {
   xml.open("dcc:quantity");
   add_text(xml, "dcc:name", name);
-  xml.open("si:real").element("si:value", number(value)).element("si:unit", unit);
-  if (expanded > 0.0 && std::isfinite(expanded)) {
-    xml.open("si:expandedUnc").element("si:uncertainty", number(expanded));
-    xml.element("si:coverageFactor", "2").element("si:coverageProbability", "0.95");
-    xml.element("si:distribution", "normal").close();
+  if (known.is_one_sided) {
+    add_text(xml, "dcc:description", kInsteadOfU);
   }
+  xml.open("si:real").element("si:value", number(value)).element("si:unit", unit);
+  add_known(xml, known);
   xml.close().close();
 }
 
@@ -154,12 +181,28 @@ void open_result(XmlWriter& xml, const char* name) {
 
 void add_figure(XmlWriter& xml, const char* name, const EvaluationResults& results,
                 const app::FigureResults& figure) {
-  if (figure.exists()) {
-    // As in the report, no U that says too little.
-    const double expanded =
-        results.is_one_sided(figure) ? 0.0 : figure.uncertainty.expanded_percent();
-    add_quantity(xml, name, results.percent_of(figure.energy_v2s), expanded, "\\percent");
+  if (!figure.exists()) {
+    return;
   }
+  const app::EnergyUncertainty& known = figure.uncertainty;
+  Known percent;
+  if (known.exists()) {
+    percent = {known.u_percent, results.is_one_sided(figure),
+               results.interval_percent_of(known.shortest, figure.energy_v2s),
+               results.settings.probability};
+  }
+  add_quantity(xml, name, results.percent_of(figure.energy_v2s), "\\percent", percent);
+}
+
+// As in the report: an interval, where U says too little.
+Known known_of_energy(const EvaluationResults& results) {
+  const app::EnergyUncertainty& known = results.uncertainty;
+  if (!known.exists() || results.is_damping_open()) {
+    return {};
+  }
+  const double energy = results.energy_v2s();
+  return {known.u_v2s, energy >= 0.0 && results.is_one_sided(known, energy),
+          app::widened(known.shortest, energy), results.settings.probability};
 }
 
 const char* name_of_energy(Criterion criterion) {
@@ -184,27 +227,26 @@ void add_errors(XmlWriter& xml, const EvaluationResults& results) {
              results, results.matched);
   add_figure(xml, "Worst rms error in band, with its delay, of sensitivity times limit", results,
              results.band);
-  const bool has_u = results.uncertainty.exists() && !results.is_damping_open();
-  add_quantity(xml, name_of_energy(results.settings.criterion), results.energy_v2s(),
-               has_u ? kCoverageFactor * results.uncertainty.u_v2s : 0.0, kEnergyUnit);
-  add_quantity(xml, "Limit of the signals", results.limit_mps2, 0.0, "\\metre\\second\\tothe{-2}");
-  add_quantity(xml, "Length of the signals", results.settings.duration_s, 0.0, "\\second");
+  add_quantity(xml, name_of_energy(results.settings.criterion), results.energy_v2s(), kEnergyUnit,
+               known_of_energy(results));
+  add_quantity(xml, "Limit of the signals", results.limit_mps2, "\\metre\\second\\tothe{-2}");
+  add_quantity(xml, "Length of the signals", results.settings.duration_s, "\\second");
   add_quantity(xml, "Order of the reference filter, Butterworth",
-               static_cast<double>(results.settings.filter_order), 0.0, "\\one");
-  add_quantity(xml, "Cutoff of the reference filter", results.settings.cutoff_hz, 0.0, "\\hertz");
+               static_cast<double>(results.settings.filter_order), "\\one");
+  add_quantity(xml, "Cutoff of the reference filter", results.settings.cutoff_hz, "\\hertz");
   xml.close().close();
 }
 
 void add_parameters(XmlWriter& xml, const EvaluationResults& results) {
   const Accelerometer& device = results.device.estimate;
-  const auto expanded = [&results](std::size_t i) {
-    return kCoverageFactor * std::sqrt(results.covariance(i, i));
+  const auto known = [&results](std::size_t i) {
+    return Known{std::sqrt(results.covariance(i, i)), false, {}, 0.0};
   };
   open_result(xml, "Parameters of the model of second order");
-  add_quantity(xml, "Sensitivity", device.sensitivity, expanded(0), kSensitivityUnit);
-  add_quantity(xml, "Natural frequency", device.natural_frequency_hz, expanded(1), "\\hertz");
+  add_quantity(xml, "Sensitivity", device.sensitivity, kSensitivityUnit, known(0));
+  add_quantity(xml, "Natural frequency", device.natural_frequency_hz, "\\hertz", known(1));
   if (!results.is_damping_open()) {
-    add_quantity(xml, "Damping ratio", device.damping, expanded(2), "\\one");
+    add_quantity(xml, "Damping ratio", device.damping, "\\one", known(2));
   }
   xml.close().close();
 }
