@@ -333,7 +333,7 @@ class CompareInBand(Comparing, ProgramTest):
                       " ".join(self.succeed("compare", "0.json", "1.json").split()))
 
     def test_marks_have_to_be_there(self):
-        for name, words in [("warnings", "warnings is no list"), ("simulated", "simulated is no truth value")]:
+        for name, words in [("warnings", "warnings is no list"), ("simulated", "simulated is neither true nor false")]:
             cut = result(matched=3.0)
             del cut[name]
             self.save("0.json", result(matched=1.0))
@@ -948,18 +948,25 @@ class CompareRefusals(Comparing, ProgramTest):
         whole = json.dumps(result())
         for cut in range(0, len(whole), 3):  # Each takes a run of the program.
             self.save("b.json", whole[:cut])
-            self.refuse(["compare", "a.json", "b.json"], f"emax: b.json:1:{cut + 1}: " if cut == 0 else "emax: b.json:")
+            self.refuse(["compare", "a.json", "b.json"], "emax: b.json:1:" if cut > 0 else "emax: b.json: the file is empty; expected a results.json")
         wrong = {
             "[" * 100: "nested too deep",
             '{"version": "0.1.0", "version": "0.1.0"}': "a name for the second time",
-            '{"version": 01}': "expected ',' or '}'",
+            " \n\t\r\n": "b.json: the file is empty; expected a results.json",
+            "emax report, version 0.1.0": "b.json:1:1: not JSON, a value is missing; expected a results.json",
+            "{version: 1}": "1:2: not JSON, a name in quotation marks is missing;",
+            '{"version" 1}': "a ':' is missing",
+            '{"version": 01}': "a ',' or '}' is missing",
+            '{"version": [1 2]}': "a ',' or ']' is missing",
+            '{"version": 1.}': "a digit is missing",
+            '{"version": "\\u12"}': "four hexadecimal digits are missing",
             '{"version": 1e999}': "a number too large",
             '{"version": "\\ud800"}': "half of a surrogate pair",
             '{"version": "\\x"}': "an unknown escape",
             '{"version": "\t"}': "a control character in a string",
-            "{}": "version is no text",
-            "[]": "version is no text",
-            whole + "x": "expected the end",
+            "{}": "b.json: holds no version; expected",
+            "[]": "b.json: holds no version; expected",
+            whole + "x": "something stands behind its end",
         }
         for content, words in wrong.items():
             with self.subTest(content=content[:40]):

@@ -55,7 +55,7 @@ class JsonParser final {
     if (take_value(value, 0)) {
       skip_space();
       if (at_ != text_.size()) {
-        (void)fail("expected the end");
+        (void)fail("something stands behind its end");
       }
     }
     return problem_ == nullptr ? JsonError{} : located();
@@ -94,7 +94,7 @@ class JsonParser final {
 
   bool take_word(std::string_view word) noexcept {
     if (text_.substr(at_, word.size()) != word) {
-      return fail("expected a value");
+      return fail("a value is missing");
     }
     at_ += word.size();
     return true;
@@ -144,7 +144,7 @@ class JsonParser final {
       ends_of_names.push_back(at_);
       skip_space();
       if (!take(':')) {
-        return fail("expected ':'");
+        return fail("a ':' is missing");
       }
       if (!take_value(member.second, depth + 1)) {
         return false;
@@ -153,7 +153,7 @@ class JsonParser final {
       skip_space();
     } while (take(','));
     if (!take('}')) {
-      return fail("expected ',' or '}'");
+      return fail("a ',' or '}' is missing");
     }
     const std::size_t again = first_repeated(value.members_);
     if (again < ends_of_names.size()) {
@@ -177,12 +177,12 @@ class JsonParser final {
       }
       skip_space();
     } while (take(','));
-    return take(']') || fail("expected ',' or ']'");
+    return take(']') || fail("a ',' or ']' is missing");
   }
 
   bool take_string(std::string& text) {
     if (!take('"')) {
-      return fail("expected a string");
+      return fail("a name in quotation marks is missing");
     }
     while (at_ < text_.size() && next() != '"') {
       if (static_cast<unsigned char>(next()) < 0x20) {
@@ -244,7 +244,7 @@ class JsonParser final {
       const char small = c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
       const std::size_t digit = kDigits.find(small);
       if (digit == std::string_view::npos) {
-        return fail("expected four hexadecimal digits");
+        return fail("four hexadecimal digits are missing");
       }
       code = 16 * code + static_cast<std::uint32_t>(digit);
       ++at_;
@@ -258,18 +258,18 @@ class JsonParser final {
     (void)take('-');
     if (!is_digit(next())) {
       at_ = start;
-      return fail("expected a value");
+      return fail("a value is missing");
     }
     if (!take('0')) {
       skip_digits();
     }
     if (take('.') && !skip_digits()) {
-      return fail("expected a digit");
+      return fail("a digit is missing");
     }
     if (take('e') || take('E')) {
       (void)(take('+') || take('-'));
       if (!skip_digits()) {
-        return fail("expected a digit");
+        return fail("a digit is missing");
       }
     }
     const std::string_view digits = text_.substr(start, at_ - start);

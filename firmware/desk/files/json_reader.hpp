@@ -46,7 +46,7 @@ class JsonValue final {
 struct JsonError {
   std::size_t line = 0;           ///< From 1; 0 if all is well.
   std::size_t column = 0;         ///< In bytes, from 1.
-  const char* problem = nullptr;  ///< "expected a value", for instance; null if all is well.
+  const char* problem = nullptr;  ///< "a value is missing", for instance; null if all is well.
 };
 
 /// Reads a whole text, which is nested at most kMaxJsonDepth deep. Of two members with the same

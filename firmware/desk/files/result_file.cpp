@@ -159,7 +159,7 @@ void take_label(const JsonValue& label, std::string& text) {
 
 Problem check_version(const JsonValue& root, const std::string& file) {
   if (!root["version"].is_string()) {
-    return bad_input(file + ": version is no text; " + kExpectation);
+    return bad_input(file + ": holds no version; " + kExpectation);
   }
   const std::string& version = root["version"].text();
   if (version != app::kVersion) {
@@ -332,8 +332,8 @@ Problem check_marks(const JsonValue& root, const std::string& file) {
     return {};
   }
   return bad_input(file + ": " +
-                   (has_warnings ? "simulated is no truth value" : "warnings is no list") + "; " +
-                   kExpectation);
+                   (has_warnings ? "simulated is neither true nor false" : "warnings is no list") +
+                   "; " + kExpectation);
 }
 
 Problem parse_result(const std::string& path, const std::string& file, JsonValue& root) {
@@ -341,13 +341,16 @@ Problem parse_result(const std::string& path, const std::string& file, JsonValue
   if (Problem problem = read_text_file(path, kMaxFileSize, kExpectation, text)) {
     return problem;
   }
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return bad_input(file + ": the file is empty; " + kExpectation);
+  }
   const JsonError error = parse_json(text, root);
   if (stop_requested()) {
     return stopped();
   }
   if (error.problem != nullptr) {
     return bad_input(file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) +
-                     ": " + error.problem + "; " + kExpectation);
+                     ": not JSON, " + error.problem + "; " + kExpectation);
   }
   return check_version(root, file);
 }
