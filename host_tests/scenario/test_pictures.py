@@ -879,6 +879,26 @@ class Certificate(PageTest, ProgramTest):
         self.assertIn("End of the certificate", pages[-1])
         self.assertIn("signature", "".join(pages))
 
+    def test_what_was_not_given_is_seen(self):
+        rows = {
+            "laboratory": "Laboratory", "customer": "Customer", "device": "Device", "serial": "Serial number", "maker": "Manufacturer",
+            "model-name": "Model", "date": "Date of the calibration", "operator": "Who measured", "procedure": "Procedure",
+            "reference-id": "Traceability", "conditions": "Conditions",
+        }
+        self.report(*TABLE1, *QUICK, "--certificate-number", "K-17")
+        self.open()
+        stated = "Object.fromEntries([...document.querySelectorAll('#certificate tr')].map(r => [r.cells[0].innerText, r.cells[1].innerText]))"
+        found = self.browser.evaluate(stated)
+        for name in rows.values():
+            self.assertTrue(found[name].startswith("Not stated"), name)
+        # A label that is given takes the words away.
+        for given in [rows, ["laboratory", "device", "conditions"]]:
+            self.report(*TABLE1, *QUICK, "--certificate-number", "K-17", *options_of({name: self.LABELS[name] for name in given}))
+            self.open()
+            found = self.browser.evaluate(stated)
+            missing = {name for name, words in found.items() if words.startswith("Not stated")}
+            self.assertEqual(missing, {row for name, row in rows.items() if name not in given})
+
     def test_a_report_is_no_certificate(self):
         self.report(*MODEL, *QUICK)
         pages = self.pages()
@@ -887,7 +907,7 @@ class Certificate(PageTest, ProgramTest):
             self.assertIn("Report, accelerometer, serial number not given", page)
         self.assertNotIn("signature", self.section())
         self.assertIn("no item was tested", self.section())
-        self.assertIn("Not stated", self.section())
+        self.assertEqual(self.section().count("Not stated"), 2, "traceability and conditions")
 
     def test_nasty_labels_below_the_pages(self):
         self.report(*MODEL, *QUICK, "--serial", "\"; } body { display: none } /* \\", "--certificate-number", "</style><script>x()</script>")

@@ -40,10 +40,34 @@ std::string method_of(const app::ReportContext& context) {
   return procedure == nullptr ? words : words + " Procedure: " + quoted(procedure) + ".";
 }
 
+// What ISO/IEC 17025 asks a certificate for, beside what stands below.
+void append_missing(std::string& html, const app::Labels& labels) {
+  struct Asked {
+    const char* name;
+    const char* words;
+  };
+  const Asked all[] = {
+      {"Laboratory", label_of(labels, CertificateLabel::kLaboratory)},
+      {"Customer", label_of(labels, CertificateLabel::kCustomer)},
+      {"Device", labels.device},
+      {"Serial number", labels.serial},
+      {"Manufacturer", label_of(labels, CertificateLabel::kMaker)},
+      {"Model", label_of(labels, CertificateLabel::kModel)},
+      {"Date of the calibration", labels.date},
+      {"Who measured", labels.operated_by},
+      {"Procedure", label_of(labels, CertificateLabel::kProcedure)},
+  };
+  for (const Asked& asked : all) {
+    if (asked.words == nullptr) {
+      append_row(html, asked.name, "Not stated.");
+    }
+  }
+}
+
 std::string traceability_of(const app::ReportContext& context) {
   const char* const reference = label_of(context.labels, CertificateLabel::kReference);
   return reference == nullptr
-             ? "Not stated: the calibration of the reference sensor was not named (--reference-id)."
+             ? "Not stated: the reference sensor and its calibration were not named."
              : "By the reference sensor " + quoted(reference) + ".";
 }
 
@@ -67,6 +91,9 @@ std::string certificate_of(const app::ReportContext& context) {
   std::string html =
       "<section id=\"certificate\" class=\"certificate\">\n<h2>About these results</h2>\n"
       "<table class=\"rows\">\n";
+  if (certificate_number(context.labels) != nullptr) {
+    append_missing(html, context.labels);
+  }
   append_row(html, "Method", method_of(context));
   append_row(html, "Traceability", traceability_of(context));
   append_row(html, "Conditions", conditions == nullptr ? "Not stated." : quoted(conditions));

@@ -68,6 +68,7 @@ table { border-collapse: collapse; }
 .numbers .name { min-width: 8.5rem; text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .numbers tbody th { font-weight: normal; }
 .numbers tbody th, .numbers tbody td { vertical-align: top; }
+#figures .numbers :is(th, td):first-child, #fit .numbers :is(th, td):first-child { text-align: left; }
 .numbers thead tr:last-child th { border-bottom: 1px solid var(--text); }
 figure { margin: 1.2rem 0; }
 figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
@@ -91,17 +92,22 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
     --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
   html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; }
+  h2 { margin-top: 1.3rem; }
+  footer { margin-top: 1.2rem; }
   /* The header of a table stands on every page. */
   .marked { display: table; width: 100%; }
   .marked .banner { display: table-header-group; break-inside: avoid; position: static; color: #000000; background: none; line-height: 2; }
   .marked main, .marked footer { display: table-row-group; }
   figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  figure svg { max-height: 85mm; }
-  #fit svg { max-height: 120mm; }
+  figure svg { max-height: 76mm; }
+  #fit svg { max-height: 105mm; }
   #ranking svg { max-height: 230mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
   figure, tr, li, .headline, .warning, .note, .sign { break-inside: avoid; }
   summary { break-after: avoid; }
+  /* No first or last row alone on a page. */
+  .rows tr:first-child { break-after: avoid; }
+  .rows tr:last-child { break-before: avoid; }
   /* What is said of a picture stays with it. */
   #error-system, #energy, #trend { break-inside: avoid; }
   /* What is folded on a screen is printed all the same. */
