@@ -86,6 +86,9 @@ TEST(OptionParser, NamesWhatIsWrong) {
   EXPECT_EQ(command.parse({"--leve=1"}), "--leve: unknown option; did you mean --level?");
   EXPECT_EQ(command.parse({"--hlep"}), "--hlep: unknown option; did you mean --help?");
   EXPECT_EQ(command.parse({"--xyzzy=4"}), "--xyzzy: unknown option; --help lists them");
+  command.syntax.other_words = {{"--levels", "--label"}};
+  EXPECT_EQ(command.parse({"--levels=1"}), "--levels: unknown option; did you mean --label?");
+  EXPECT_EQ(command.parse({"--leve=1"}), "--leve: unknown option; did you mean --level?");
   for (const char* stray : {"2", "-f", "--", "-", ""}) {
     EXPECT_EQ(command.parse({stray}), std::string(stray) + ": unexpected argument; expected " +
                                           "options, such as --level 2");

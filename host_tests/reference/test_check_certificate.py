@@ -511,7 +511,7 @@ class CertifyRefuses(unittest.TestCase):
         self.refuses(b"--rounds: \"2.5\"", *model, "--rounds", "2.5")
         self.refuses(b"--box: \"0.003,6\"", *model, "--box", "0.003,6")
         self.refuses(b"--box: a box without width", *model, "--box", "auto")
-        self.refuses(b"--box: the box holds devices that there are not", *model, "--box", "0.003,6,0.4")
+        self.refuses(b"--box: some devices of the box cannot exist", *model, "--box", "0.003,6,0.4")
         self.refuses(b"--out: no value", *model, "--out=")
         self.refuses(b"take no delay out", *model, "--order", "1", "--criterion", "band")
         self.refuses(b"--criterion: no signal is known", "--model", "0.01,4073,0.7", "--gain", "1", "--order", "1", "--criterion",

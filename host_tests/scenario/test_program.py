@@ -320,6 +320,11 @@ class Options(ProgramTest):
         for option, value in zip(defaults[::2], defaults[1::2]):
             self.assertRegex(text, rf"(?s){option} .*?\(default {re.escape(value)}\)")
 
+    def test_one_name_for_what_points_have_in_common(self):
+        for command in ["report", "certify", "scpi"]:
+            self.refuse([command, "--common-uncertainty", "0.5"], "--common-uncertainty: ", "did you mean --reference-uncertainty?")
+        self.refuse(["compare", "--common-uncertainty", "0.5"], "--common-uncertainty: no option of emax compare; --help lists them")
+
     def test_two_forms(self):
         spaced = self.succeed("report", *MODEL, *QUICK, "--order", "4")
         joined = self.succeed("report", f"--model={MODEL[1]}", "--trials=1e3", "--trend=none", "--order=4")

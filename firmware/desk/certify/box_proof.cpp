@@ -104,8 +104,8 @@ Problem BoxProof::set_ranges(const app::EvaluationResults& estimate, const BoxOp
                          middle_.damping + half_width_.damping < 1.0;
   return is_inside ? Problem{}
                    : bad_input(
-                         "--box: the box holds devices that there are not; expected S and f0 above "
-                         "0 and beta between 0 and 1 all over it");
+                         "--box: some devices of the box cannot exist; expected S and f0 above 0 "
+                         "and beta between 0 and 1 in all of it");
 }
 
 // The largest of all cells, each for itself.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "emax/app/evaluate/evaluation.hpp"
@@ -97,10 +98,31 @@ bool take_rounds(std::string_view text, std::uint64_t& rounds) {
 Syntax syntax_of(CertifyOptions& options) {
   ReportOptions& report = options.report;
   Syntax syntax;
-  for (const char* name : {"points", "model", "reference-uncertainty", "uncertainty", "input-units",
-                           "channel-delay", "invert", "damping", "order", "cutoff", "gain", "time",
-                           "limit", "criterion", "reference-delay"}) {
-    syntax.options.push_back(report_option(report, name));
+  constexpr std::pair<const char*, const char*> kOfReport[] = {
+      {"points", nullptr},
+      {"model",
+       "known parameters: sensitivity in V/(m/s^2), natural\n"
+       "frequency in Hz, damping (0.0001 to below 1); then\n"
+       "their standard uncertainties, for --box auto"},
+      {"reference-uncertainty",
+       "expanded uncertainty (k = 2) that all amplitudes of\n"
+       "the table have in common: reference sensor, gains,\n"
+       "mounting"},
+      {"uncertainty", nullptr},
+      {"input-units", nullptr},
+      {"channel-delay", nullptr},
+      {"invert", nullptr},
+      {"damping", nullptr},
+      {"order", nullptr},
+      {"cutoff", nullptr},
+      {"gain", nullptr},
+      {"time", nullptr},
+      {"limit", nullptr},
+      {"criterion", nullptr},
+      {"reference-delay", nullptr},
+  };
+  for (const auto& [name, help] : kOfReport) {
+    syntax.options.push_back(report_option(report, name, help));
   }
   syntax.options.push_back(report_option(report, "json",
                                          "{T,E,bound,gap,cells,multipliers,nodes,\n"
@@ -114,19 +136,20 @@ Syntax syntax_of(CertifyOptions& options) {
        [&options](std::string_view text) { return take_box(text, options.box); }});
   syntax.options.push_back(
       {"effort", heading, "SECONDS", "10", "a number of seconds above 0",
-       "time of the processor to spend on the bound;\n"
-       "it also decides how fine the grid is",
+       "processor time to spend on the bound; it also decides\n"
+       "how fine the grid is",
        [&options](std::string_view text) { return take_effort(text, options.effort_s); }});
   syntax.options.push_back(
       {"rounds", heading, "N", "", "a whole number from 1 to 100000",
-       "so many rounds, however long they take: the\n"
-       "same certificate, byte for byte, every time",
+       "number of rounds, however long they take: it gives\n"
+       "the same certificate, byte for byte, every time",
        [&options](std::string_view text) { return take_rounds(text, options.rounds); }});
   syntax.options.push_back(
       {"out", heading, "FILE", "", "the name of a file",
-       "the certificate, JSON, which\n"
+       "writes the proof as JSON, which\n"
        "host_tests/reference/check_certificate.py verifies",
        [&options](std::string_view text) { return take_text(text, options.out_path); }});
+  syntax.other_words = other_words();
   syntax.unknown = "no option of emax certify";
   syntax.expected = "options, such as --points FILE";
   return syntax;
@@ -696,11 +719,11 @@ std::string help_on_certify() {
   return R"(usage: emax certify --model S,f0,beta [options]
        emax certify --points FILE [options]
 
-Proves how far the maximum energy of emax report can be from the truth: a bound
-of the energy, by any criterion, that no signal within +-a on [0, T] exceeds,
-whatever its shape; with --box for every device within its uncertainties. The
-longer it runs the tighter the bound; Ctrl-C ends it early with what is proven
-by then.
+Proves how far the maximum energy of emax report can be from the truth. It finds
+a bound that no signal within +-a on [0, T] exceeds, whatever its shape; with
+--box the bound holds for every device within its uncertainties. The longer it
+runs, the tighter is the bound. Ctrl-C ends it early, with what is proven by
+then.
 )" + help_on(syntax_of(options).options);
 }
 

@@ -33,18 +33,21 @@ inline constexpr LabelRow kLabelRows[] = {
     {"certificate-number", "certificate_number", "Certificate number", "a number or a name",
      "makes the page a certificate of this number"},
     {"laboratory", "laboratory", "Laboratory", "a name and an address",
-     "name and address of who calibrates"},
+     "name and address of the calibration laboratory"},
     {"country", "country", "Country", "two capital letters",
-     "of the laboratory, two letters of ISO 3166, as DE"},
-    {"customer", "customer", "Customer", "a name and an address", "for whom, name and address"},
-    {"maker", "maker", "Manufacturer", "a name", "who has made the device"},
-    {"model-name", "model_name", "Model", "a name", "the maker's name of its type"},
+     "country of the laboratory, two letters (ISO 3166): DE"},
+    {"customer", "customer", "Customer", "a name and an address",
+     "name and address of the customer"},
+    {"maker", "maker", "Manufacturer", "a name", "manufacturer of the device"},
+    {"model-name", "model_name", "Model", "a name",
+     "type of the device, as its manufacturer names it"},
     {"reference-id", "reference_id", "Reference sensor", "a name",
      "the reference sensor and its certificate, to which\n"
      "the results are traceable"},
     {"conditions", "conditions", "Conditions", "a text",
      "temperature, humidity, mounting and torque"},
-    {"procedure", "procedure", "Procedure", "a text", "of the laboratory, such as its number"},
+    {"procedure", "procedure", "Procedure", "a text",
+     "procedure of the laboratory, such as its number"},
 };
 inline constexpr std::size_t kLabelRowCount = sizeof kLabelRows / sizeof kLabelRows[0];
 

@@ -23,8 +23,11 @@ Problem unknown_option(std::string_view argument, const Syntax& syntax) {
     names.push_back(dashed(option.name));
   }
   const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string_view meant =
+  std::string_view meant =
       nearest(argument, Span<const std::string_view>(views.data(), views.size()));
+  for (const auto& [word, option] : syntax.other_words) {
+    meant = argument == word ? option : meant;
+  }
   return bad_input(
       printable(argument) + ": " + syntax.unknown +
       (meant.empty() ? "; --help lists them" : "; did you mean " + std::string(meant) + "?"));

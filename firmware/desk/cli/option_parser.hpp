@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "emax/base/span.hpp"
@@ -18,6 +19,8 @@ struct Syntax {
   std::vector<Option> options;
   /// How an option that there is not is called, in errors.
   std::string unknown = "unknown option";
+  /// Words that are no options, each with the option that it may mean; before similar names.
+  std::vector<std::pair<std::string_view, std::string_view>> other_words = {};
   /// What may stand where no option stands, in errors: "options, such as --points FILE".
   std::string expected;
   /// Takes what is no option; without it everything has to be one.

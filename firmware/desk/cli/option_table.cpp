@@ -247,10 +247,10 @@ std::vector<Option> device_options(ReportOptions& options) {
                                      "columns and units; - reads standard input",
                 options.points_path)
       .add_text("instrument", "PORT", "HOST:PORT or a serial line",
-                "an emax that measures it: HOST:PORT, or a serial line\n"
-                "such as /dev/ttyACM0; it is put into its defaults\n"
-                "(*RST), set up from the options below, and measures;\n"
-                "this program evaluates. Ctrl-C ends its sweep first",
+                "a board with emax that measures: HOST:PORT, or a\n"
+                "serial line such as /dev/ttyACM0. It gets its defaults\n"
+                "(*RST), then the options below, and measures; this\n"
+                "program evaluates. Ctrl-C stops the board's sweep, too",
                 options.instrument)
       .add("model", "S,f0,beta[,uS,uf0,ubeta]", "",
            "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",
@@ -260,9 +260,11 @@ std::vector<Option> device_options(ReportOptions& options) {
            "no Monte Carlo part",
            take_model)
       .add("reference-uncertainty", "PERCENT", "0", "a number of percent from 0 to 50",
-           "of the reference sensor, expanded (k = 2): common to\n"
-           "all points; with --points it is taken to be within\n"
-           "the uncertainty of each amplitude. 0.5 on the bench",
+           "expanded uncertainty (k = 2) that all amplitudes have\n"
+           "in common. With --points it is a part of the table's\n"
+           "uncertainties: the reference sensor, gains, mounting.\n"
+           "On the bench it is that of the reference sensor alone,\n"
+           "0.5 unless given",
            take_reference);
   return builder.options();
 }
@@ -291,12 +293,12 @@ std::vector<Option> table_options(ReportOptions& options) {
            "kHz,mV/(m/s2),rad",
            take_input_units)
       .add("channel-delay", "SECONDS", "", kExpectedChannelDelay,
-           "known delay of the device's channel behind the\n"
+           "known delay of the device's channel, relative to the\n"
            "reference's; it is taken out of the phases",
            take_channel_delay)
       .add_switch("invert",
-                  "180 degrees are added to every phase: the polarity of\n"
-                  "the sensor is turned round",
+                  "adds 180 degrees to every phase: the sensor was\n"
+                  "mounted or wired the wrong way round",
                   options.import.is_inverted)
       .add("damping", "BETA", "", "a number from 0.0001 to below 1",
            "damping, where the points of the table do not\n"
@@ -309,7 +311,7 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
   Builder builder(options, kBenchHeading, true);
   builder
       .add("bench-seed", "N", "1", "a whole number from 0 to 4294967295",
-           "of its noise and of what its certificates leave open", take_bench_seed)
+           "seed of its noise and of its unknown errors", take_bench_seed)
       .add("bench-truth", "S,f0,beta", "1.037,4073,0.3182",
            "three numbers: S from 1e-5 to 1000 V/(m/s^2), f0 from 1 to 1e6 Hz, beta from 0.001 to "
            "below 1",
@@ -319,18 +321,19 @@ std::vector<Option> own_bench_options(ReportOptions& options) {
       .add("bench-noise", "VOLTS", "0.005", "a number of V from 0 to 1",
            "noise of each channel, rms, in V", take_bench_noise)
       .add("bench-hum", "VOLTS[,HZ]", "0.0002,49.97", "0 to 1 V, and perhaps 0 to 1000 Hz",
-           "mains in each channel, and a third as much at three\n"
-           "times its frequency",
+           "hum of the mains in each channel; a third as much at\n"
+           "three times the frequency",
            take_bench_hum)
       .add("bench-drift", "PERCENT", "0.02", "a number of percent from 0 to 50",
-           "of the reference within the first 10 s, expanded", take_bench_drift)
+           "drift of the reference in its first 10 s, expanded", take_bench_drift)
       .add("bench-ratio", "X", "1", "0.1 to 10",
-           "true gain of the device's channel over the\n"
-           "reference's, over the nominal one: see\n"
+           "true ratio of the channels' gains, as in\n"
            "--correction-ratio",
            take_bench_ratio)
       .add("bench-skew", "SECONDS", "1.25e-6", "seconds within 4e-6 of either sign",
-           "true skew of the channels: see --correction-skew", take_bench_skew)
+           "true time between the samples of the channels, as in\n"
+           "--correction-skew",
+           take_bench_skew)
       .add("bench-fault", "NAME[@SECONDS][,NAME[@SECONDS]]", "none", kExpectedFault,
            "what goes wrong, and when (default 3 s after the\n"
            "start; the sweep takes 6): lost-block, late-block,\n"
@@ -352,10 +355,10 @@ std::vector<Option> bench_setting_options(ReportOptions& options) {
   Builder builder(options, kBenchHeading, true);
   builder
       .add("reference-sensitivity", "V/(M/S2)", "0.1", "a number above 0",
-           "of the reference sensor, in V/(m/s^2)", take_reference_sensitivity)
+           "sensitivity of the reference sensor, in V/(m/s^2)", take_reference_sensitivity)
       .add("reference-table", "F1,S1,...", "", "2 to 64 pairs of Hz and V/(m/s^2)",
-           "of the reference over frequency, with straight lines\n"
-           "between them",
+           "sensitivity of the reference sensor over frequency,\n"
+           "with straight lines between the points",
            take_reference_table);
   const std::vector<Option>& more = builder.options();
   all.insert(all.end(), more.begin(), more.end());
@@ -367,8 +370,8 @@ constexpr const char* kTrialsHeading = "Monte Carlo";
 std::vector<Option> thread_options(ReportOptions& options) {
   Builder builder(options, kTrialsHeading);
   builder.add("threads", "N|all", "all", "a whole number from 1 to 64, or all",
-              "cores for the trials and the draws for the covariance\n"
-              "of the fit; no result depends on it",
+              "number of cores to use; the results do not depend on\n"
+              "it",
               take_threads);
   return builder.options();
 }
@@ -438,8 +441,9 @@ std::vector<Option> label_options(ReportOptions& options) {
       .add_text("device", "TEXT", "the name of the device", "name of the device, for titles too",
                 options.device_name)
       .add_text("serial", "TEXT", "a serial number", "its serial number", options.serial)
-      .add_text("operator", "TEXT", "a name", "who measures", options.operated_by)
-      .add_text("date", "TEXT", "a date", "when, in any form", options.date)
+      .add_text("operator", "TEXT", "a name", "name of the person who measures",
+                options.operated_by)
+      .add_text("date", "TEXT", "a date", "date of the measurement, in any form", options.date)
       .add_text("note", "TEXT", "a note",
                 "anything else; the text report shows the first 240\n"
                 "characters of each label, the page and results.json\n"
@@ -501,11 +505,17 @@ std::vector<Option> report_options(ReportOptions& options) {
 }
 
 std::vector<Option> bench_options(ReportOptions& options) {
-  std::vector<Option> all = {report_option(options, "reference-uncertainty")};
+  std::vector<Option> all = {report_option(options, "reference-uncertainty",
+                                           "expanded uncertainty (k = 2) of the reference sensor")};
   append(all, own_bench_options(options));
   append(all, bench_setting_options(options));
   all[0].heading = kBenchHeading;
+  all[0].by_default = "0.5";
   return all;
+}
+
+std::vector<std::pair<std::string_view, std::string_view>> other_words() {
+  return {{"--common-uncertainty", "--reference-uncertainty"}};
 }
 
 Option report_option(ReportOptions& options, const char* name, const char* help) {

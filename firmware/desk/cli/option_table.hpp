@@ -1,6 +1,8 @@
 // The options of `emax report`, some of which other commands have, too.
 #pragma once
 
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "desk/cli/option.hpp"
@@ -20,5 +22,8 @@ std::vector<Option> bench_options(ReportOptions& options);
 
 /// @returns The option of that name, with another text in the help if there is one.
 Option report_option(ReportOptions& options, const char* name, const char* help = nullptr);
+
+/// For `Syntax::other_words`: what is no option of a report, but may be taken for one.
+std::vector<std::pair<std::string_view, std::string_view>> other_words();
 
 }  // namespace emax::desk

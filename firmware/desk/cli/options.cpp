@@ -51,7 +51,7 @@ Problem check_source(const std::vector<Given>& all, const ReportOptions& options
   }
   if (has_model && options.settings.birge) {
     return bad_input(
-        "--birge: excluded by --model; expected with points, since the ratio is that of their fit");
+        "--birge: excluded by --model; expected with points: the ratio belongs to their fit");
   }
   return has_model ? check_model(options.device) : Problem{};
 }
@@ -168,6 +168,7 @@ app::Labels ReportOptions::labels(const std::vector<app::NamedLabel>& more) cons
 Problem parse_report_options(Span<const std::string_view> arguments, ReportOptions& options) {
   Syntax syntax;
   syntax.options = report_options(options);
+  syntax.other_words = other_words();
   syntax.expected = "options, such as --points FILE";
   std::vector<Given> all;
   const Problem problem = parse_options(arguments, syntax, all);

@@ -171,12 +171,12 @@ std::string help_on_compare() {
   CompareOptions options;
   return R"(usage: emax compare A.json B.json ... [options]
 
-Ranks devices by how wrong they can get, from the results.json of emax report,
-all with the same filter, T, criterion and delay taken out. S and a may differ,
-but for --by energy: since a is the number of S by default, give one --limit to
-all reports then. Two devices share ranks where the uncertainties do not tell
-them apart. A device whose fit warns, or of a simulated bench, is marked and
-told apart from no other.
+Ranks devices by how wrong they can get, from the results.json of emax report.
+All reports need the same filter, T, criterion and choice of the delay. S and a
+may differ, except with --by energy: give all reports the same --limit then, as
+a is the number of S by default. Two devices share their ranks where the
+uncertainties do not tell them apart. A device is marked where its fit warns or
+its bench was simulated; it is then not told apart from any other.
 )" + help_on(syntax_of(options).options);
 }
 

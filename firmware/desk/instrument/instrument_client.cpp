@@ -217,7 +217,9 @@ Problem InstrumentClient::set_reference(const app::ReferenceCalibration& referen
     return {};
   }
   if (reference.count > 1) {
-    return bad_input("--reference-uncertainty: no command sets it beside a table; leave it out");
+    return bad_input(
+        "--reference-uncertainty: a board takes none together with --reference-table; leave it "
+        "out");
   }
   return set(":SENS:REF:SENS " + number_text(reference.sensitivity[0]) + "," +
                  number_text(reference.expanded_percent),
@@ -229,7 +231,7 @@ Problem InstrumentClient::set_row(const app::SettingRow& row, const app::Setting
                                   const app::SweepSettings& sweep) {
   const std::string option = std::string("--") + row.option.name;
   if (row.command.header == nullptr) {
-    return bad_input(option + ": no command sets it at an instrument; leave it out");
+    return bad_input(option + ": a board has no command for it; leave it out");
   }
   std::string command = header_of(row) + " " + number_text(number_in(row.field, &sweep));
   if (uncertainty != nullptr) {

@@ -382,10 +382,10 @@ std::string help_on_report() {
        emax report --points FILE [options]
        emax report --model S,f0,beta[,uS,uf0,ubeta] [options]
 
-Measures an accelerometer on the simulated bench or by an instrument, or takes
-measured points or known parameters; identifies it, finds the signal with the
-largest error energy and prints a report. Numbers are in SI units; --option
-VALUE and --option=VALUE both do.
+Measures an accelerometer, on the simulated bench or on a board, or takes a
+table of measured points or known parameters. Then it fits a model, finds the
+signal with the largest error energy and prints a report. Numbers are in SI
+units. Write --option VALUE or --option=VALUE.
 )" + help_on_report_options();
 }
 

@@ -46,11 +46,12 @@ Syntax syntax_of(ScpiOptions& options) {
   syntax.options = {
       {"tcp", kHeading, "[ADDRESS:]PORT", "",
        "a port from 1 to 65535, or 0 for any that is free, with or without an address before it",
-       "serve one client after the other on a port instead;\n"
-       "0 chooses one; which it is, standard error says. On\n"
-       "127.0.0.1 without an address; on another one, such\n"
-       "as 0.0.0.0 for all, whoever reaches it may drive the\n"
-       "shaker: there is no password",
+       "serves one client after the other on this port; 0\n"
+       "takes a free one, and standard error says which.\n"
+       "Without an address only this computer can connect\n"
+       "(127.0.0.1). With another one, such as 0.0.0.0 for\n"
+       "all, anybody who reaches it can drive the shaker:\n"
+       "there is no password",
        [&options](std::string_view text) { return take_port(text, options); }},
       {"pace", kHeading, "X", "as fast as it goes",
        "seconds of the bench per second, from 0.001 to 1e6; 1 is real time",
@@ -61,12 +62,13 @@ Syntax syntax_of(ScpiOptions& options) {
        "keeps what *SAV saves and the last identification;\n"
        "without it they are forgotten at the end",
        [&options](std::string_view text) { return take_text(text, options.store_path); }},
-      {"commands", kHeading, "", "", "", "print the table of all commands, as Markdown",
+      {"commands", kHeading, "", "", "", "prints the table of all commands, as Markdown",
        [&options](std::string_view) { return options.prints_commands = true; }}};
   for (Option& option : bench_options(options.report)) {
     option.heading = "The simulated bench";
     syntax.options.push_back(option);
   }
+  syntax.other_words = other_words();
   syntax.expected = "options, such as --tcp 5025";
   return syntax;
 }

@@ -63,9 +63,10 @@ inline constexpr SettingRow kSettingRows[] = {
     setting("criterion", EMAX_SETTING(Settings, criterion), SettingGroup::kSignal, Concern::kEnergy)
         .one_of(kCriterionWords)
         .as_option({nullptr, "ise|difference|band", "ise, difference or band",
-                    "ise: energy of the error, y = ya - yf;\n"
-                    "difference: energy of ya minus that of yf;\n"
-                    "band: energy of the error within the filter's band"})
+                    "ise: energy of the error, sensor minus filter;\n"
+                    "difference: energy of the sensor's output minus that\n"
+                    "of the filter's; band: energy of the error within the\n"
+                    "filter's band"})
         .as_command("CALCulate:ENERgy:CRITerion", "ISE|DIFFerence|BAND",
                     "Energy of the error, difference of the energies, or error in band"),
     setting("reference delay", EMAX_SETTING(Settings, delay_s), offsetof(Settings, delay_choice),
@@ -73,15 +74,15 @@ inline constexpr SettingRow kSettingRows[] = {
         .within(0.0, kMaxDuration_s, "'auto', 'none', or a number of seconds, 0 or more")
         .or_one_of(kDelayWords, static_cast<std::uint8_t>(DelayChoice::kGiven))
         .as_option({"reference-delay", "auto|none|NUMBER", "auto, none or a number of seconds",
-                    "delay that the in-band error allows the sensor:\n"
-                    "auto is its own at low frequency, beta/(pi f0)"})
+                    "delay that is taken out of the in-band error; auto is\n"
+                    "the sensor's own at low frequency, beta/(pi f0)"})
         .as_command("CALCulate:ENERgy:DELay", "<s>|AUTO|NONE",
                     "Delay taken out of the error in band; AUTO: that of the sensor", "S"),
     setting("method", EMAX_SETTING(Settings, method), SettingGroup::kSignal, Concern::kEnergy)
         .one_of(kMethodWords)
         .as_option({nullptr, "best|paper", "best or paper",
-                    "best: many starts; paper: the fixed point from the\n"
-                    "first column of Phi, as published"})
+                    "best: many starts; paper: the published procedure, one\n"
+                    "start (the first column of the matrix Phi)"})
         .as_command("CALCulate:ENERgy:METHod", "BEST|PAPer",
                     "Many starts, or the fixed point of the paper"),
     setting("step", EMAX_SETTING(Settings, step_s), SettingGroup::kSignal, Concern::kPaper)
@@ -93,18 +94,18 @@ inline constexpr SettingRow kSettingRows[] = {
     setting("iterations", EMAX_SETTING(Settings, iterations), SettingGroup::kSignal,
             Concern::kPaper)
         .within(1, kMaxIterations, "a whole number from 1 to 1000")
-        .as_option({nullptr, "J", nullptr, "iterations at most; for --method paper"})
+        .as_option({nullptr, "J", nullptr, "most iterations; for --method paper"})
         .as_command("CALCulate:ENERgy:ITERations", "<J>", "Iterations of PAPer and FPA?, at most"),
     setting("trials", EMAX_SETTING(Settings, trials), SettingGroup::kTrials, Concern::kTrialCount)
         .within(kMinTrials, kMaxTrials, "a whole number from 1000 to 1000000000")
         .as_option({nullptr, "M", nullptr,
-                    "number of trials, 1000 to 1e9; a warning below\n"
-                    "1e4/(1 - p)"})
+                    "number of trials, 1000 to 1e9; below 1e4/(1 - p), with\n"
+                    "p of --probability, there is a warning"})
         .as_command("CALCulate:MCARlo:TRIals", "<M>", "Number of trials"),
     setting("adaptive", EMAX_SETTING(Settings, adaptive), SettingGroup::kTrials, Concern::kTrials)
         .as_option({nullptr, nullptr, nullptr,
-                    "the number of trials by JCGM 101 7.9; --trials is\n"
-                    "then unused"})
+                    "as many trials as stable results take (JCGM 101, 7.9);\n"
+                    "--trials is then unused"})
         .as_command("CALCulate:MCARlo:ADAPtive", "<on>", "The number of trials by JCGM 101 7.9"),
     setting("probability", EMAX_SETTING(Settings, probability), SettingGroup::kCoverage,
             Concern::kTrials)
@@ -123,14 +124,14 @@ inline constexpr SettingRow kSettingRows[] = {
                     "Uniform within +-u, or normal with the fit's covariance"),
     setting("birge", EMAX_SETTING(Settings, birge), SettingGroup::kCoverage, Concern::kTrials)
         .as_option({nullptr, nullptr, nullptr,
-                    "the trials' uncertainties times the fit's Birge\n"
-                    "ratio, if that is above 1"})
+                    "multiplies the uncertainties in the trials by the\n"
+                    "Birge ratio of the fit, where that is above 1"})
         .as_command("CALCulate:MCARlo:BIRGe", "<on>",
                     "Uncertainties times the fit's Birge ratio, if above 1"),
     setting("seed", EMAX_SETTING(Settings, seed), SettingGroup::kRandom, Concern::kRandom)
         .as_option({nullptr, "A,B,C,D",
                     "four whole numbers above 0, or three with --generator 1982",
-                    "start of the random numbers; three numbers will do\n"
+                    "start of the random numbers; three numbers are enough\n"
                     "with --generator 1982",
                     "123456789,345678901,567890123,789012345"})
         .as_command("CALCulate:MCARlo:SEED", "<a>,<b>,<c>,<d>", "Start of the random numbers"),

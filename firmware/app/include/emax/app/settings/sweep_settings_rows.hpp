@@ -29,7 +29,7 @@ inline constexpr SettingRow kSweepSettingRows[] = {
     setting("sweep frequencies", EMAX_SETTING(SweepSettings, frequency_hz),
             offsetof(SweepSettings, frequency_count), SettingGroup::kDrive, Concern::kSweep)
         .as_option({"frequencies", "F1,F2,...", "3 or more frequencies in Hz, ascending",
-                    "of the sweep, in Hz", "the 42 of the paper's Table 1"}),
+                    "frequencies of the sweep, in Hz", "the 42 of the paper's Table 1"}),
     setting("level", EMAX_SETTING(SweepSettings, level_mps2), SettingGroup::kDrive, Concern::kSweep)
         .within(ranges::kSmallest, ranges::kLargest, "above 0, in m/s^2")
         .as_option(
@@ -100,7 +100,8 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             Concern::kSweep)
         .within(ranges::kSmallest, ranges::kLargest, "above 0")
         .as_option({"device-gain", "X[,PERCENT]", "a gain above 0, and perhaps its percent",
-                    "the same of the device's conditioner"})
+                    "gain of the device's conditioner, and its expanded\n"
+                    "uncertainty (k = 2) in percent"})
         .as_command("[SENSe:]DEVice:GAIN", "<x>[,<percent>]",
                     "Gain of the device's conditioner, expanded u")
         .with_uncertainty("PCT"),
@@ -111,8 +112,9 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             Concern::kSweep)
         .within(0.1, 10.0, "0.1 to 10")
         .as_option({"correction-ratio", "X[,PERCENT]", "0.1 to 10, and perhaps its percent",
-                    "gain of the device's channel over the reference's,\n"
-                    "over the nominal one, and its expanded uncertainty"})
+                    "ratio of the channels' gains, device over reference,\n"
+                    "relative to the nominal ratio, and its expanded\n"
+                    "uncertainty (k = 2) in percent"})
         .as_command("[SENSe:]CORRection:RATio", "<x>[,<percent>]",
                     "Device's channel over reference's, over nominal; expanded u")
         .with_uncertainty("PCT"),
@@ -123,16 +125,16 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kMaxPercent, "0 to 50 percent")
         .as_option({"mounting-uncertainty", "PERCENT", "a number of percent from 0 to 50",
-                    "of mounting, transverse motion and temperature,\n"
-                    "expanded (k = 2)"})
+                    "expanded uncertainty (k = 2) by mounting, transverse\n"
+                    "motion and temperature"})
         .as_command("[SENSe:]MOUNting:UNCertainty", "<percent>",
                     "Mounting, transverse motion, temperature; expanded u", "PCT"),
     setting("skew", EMAX_SETTING(SweepSettings, skew_s), SettingGroup::kChain, Concern::kSweep)
         .within(-1e-3, 1e-3, "within 1 ms of either sign")
         .as_option({"correction-skew", "S[,S]",
                     "seconds within 1 ms, and perhaps their uncertainty",
-                    "by which the device's channel samples later than the\n"
-                    "reference's, and its expanded uncertainty, in s"})
+                    "time by which the device's channel samples later than\n"
+                    "the reference's, and its expanded uncertainty, in s"})
         .as_command("[SENSe:]CORRection:SKEW", "<s>[,<s>]",
                     "The device's channel is sampled later by this; expanded u", "S")
         .with_uncertainty("S"),
@@ -143,56 +145,61 @@ inline constexpr SettingRow kSweepSettingRows[] = {
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, 1e4, "0 to 10000 ppm")
         .as_option({"clock-uncertainty", "PPM", "a number of ppm from 0 to 10000",
-                    "of the sampling rate, expanded (k = 2), in ppm"})
+                    "expanded uncertainty (k = 2) of the sampling rate, in\n"
+                    "ppm"})
         .as_command("[SENSe:]CLOCk:UNCertainty", "<ppm>", "Of the sampling rate; expanded u"),
     setting("crosstalk", EMAX_SETTING(SweepSettings, crosstalk_expanded_percent),
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kMaxPercent, "0 to 50 percent")
         .as_option({"crosstalk-uncertainty", "PERCENT", "a number of percent from 0 to 50",
-                    "of a channel's voltage seen in the other, expanded"})
+                    "part of one channel's voltage that appears in the\n"
+                    "other, expanded (k = 2)"})
         .as_command("[SENSe:]CROSstalk:UNCertainty", "<percent>",
                     "Of a channel's voltage seen in the other; expanded u", "PCT"),
     setting("linearity", EMAX_SETTING(SweepSettings, linearity_expanded_percent),
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kMaxPercent, "0 to 50 percent")
         .as_option({"linearity-uncertainty", "PERCENT", "a number of percent from 0 to 50",
-                    "change of a channel's gain up to full scale, expanded"})
+                    "change of a channel's gain from small signals to full\n"
+                    "scale, expanded (k = 2)"})
         .as_command("[SENSe:]LINearity:UNCertainty", "<percent>",
                     "Change of a channel's gain up to full scale; expanded u", "PCT"),
     setting("check frequency", EMAX_SETTING(SweepSettings, check_hz), SettingGroup::kChain,
             Concern::kSweep)
         .within(0.0, ranges::kLargest, "0.1 Hz or more and below the sample rate over 2.5")
         .as_option({"check-frequency", "HZ", "a frequency from 0.1 Hz",
-                    "measured before and after the sweep"})
+                    "frequency that is measured before and after the sweep,\n"
+                    "to see the drift"})
         .as_command("[SENSe:]SWEep:CHECk", "<Hz>", "Measured before and after the sweep", "HZ")
         .on_console_within(0.1, ranges::kLargest),
     setting("expected sensitivity", EMAX_SETTING(SweepSettings, expected_sensitivity),
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kLargest, "above 0 in V/(m/s^2), or 0 if it is not known")
         .as_option({"device-sensitivity", "V/(M/S2)", "a sensitivity, or 0",
-                    "of the device by its data sheet, within a factor of 3,\n"
-                    "in V/(m/s^2); 0 if there is none"})
+                    "sensitivity of the device by its data sheet, right\n"
+                    "within a factor of 3, in V/(m/s^2); 0 if not known"})
         .as_command("[SENSe:]DEVice:SENSitivity", "<V/(m/s2)>",
                     "Of the device by its data sheet; 0 if not known"),
     setting("drive full scale", EMAX_SETTING(SweepSettings, drive_full_scale_v),
             SettingGroup::kDrive, Concern::kSweep)
         .within(0.0, ranges::kLargest, "1 mV or more, or 0")
         .as_option({"drive-full-scale", "VOLTS", "1 mV or more, or 0",
-                    "outside the front end; 0 for the converter's own"})
+                    "full scale of the drive outside the front end; 0: that\n"
+                    "of the converter"})
         .as_command("SOURce:FULLscale", "<V>", "Of the drive, outside the front end; 0: at the pin",
                     "V"),
     setting("reference full scale", EMAX_SETTING(SweepSettings, reference_full_scale_v),
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kLargest, "1 mV or more, or 0")
         .as_option({"reference-full-scale", "VOLTS", "1 mV or more, or 0",
-                    "the same of the reference's channel"})
+                    "full scale of the reference's channel, as above"})
         .as_command("[SENSe:]REFerence:FULLscale", "<V>",
                     "Of its channel, outside the front end; 0: at the pin", "V"),
     setting("device full scale", EMAX_SETTING(SweepSettings, device_full_scale_v),
             SettingGroup::kChain, Concern::kSweep)
         .within(0.0, ranges::kLargest, "1 mV or more, or 0")
         .as_option({"device-full-scale", "VOLTS", "1 mV or more, or 0",
-                    "the same of the device's channel"})
+                    "full scale of the device's channel, as above"})
         .as_command("[SENSe:]DEVice:FULLscale", "<V>",
                     "Of its channel, outside the front end; 0: at the pin", "V"),
 };
