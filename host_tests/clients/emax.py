@@ -39,7 +39,7 @@ def find_program() -> str:
     for folder in pathlib.Path(__file__).resolve().parents:
         if (built := folder / "build/host/emax").is_file():
             return str(built)
-    raise EmaxError(2, "the program emax is not found: put it on the PATH, or set EMAX to its path")
+    raise EmaxError(2, "the program emax is not found: put it on the PATH, or set EMAX to its path, such as build/host/emax")
 
 
 def option_words(options: dict) -> list[str]:

@@ -111,6 +111,23 @@ class PythonTest(unittest.TestCase):
         for command, output in shown:
             self.assertEqual(self.example(*command.split()), output, command)
 
+    def test_list_of_sensors_of_the_readme(self):
+        readme = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
+        scripts = re.findall(r"^```python\n(import csv, emax\n(?:.*\n)*?)```$", readme, re.MULTILINE)
+        self.assertEqual(len(scripts), 1)
+        head = re.search(r"`sensors.csv` with the head `(\S+)`", readme)[1]
+        rows = [head, "C7,1.037,4073,0.3182,0.003,6,0.0004", "D8,2.074,4073,0.3182,0.006,6,0.0004"]
+        (self.directory / "sensors.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        (self.directory / "list.py").write_text(scripts[0], encoding="utf-8")
+        shutil.copy(HERE / "emax.py", self.directory)
+        done = subprocess.run([sys.executable, "-B", "list.py"], cwd=self.directory, env=os.environ | {"EMAX": PROGRAM},
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.stderr, "")
+        # E goes with a^2, which is 1 here, and with S^2; the in-band figure of the paper's device is 1.196 % (DESIGN).
+        energies = [f"{ENERGY / MODEL[0] ** 2 * scale:.3e}" for scale in (1, 4)]
+        for line, name, energy in zip(done.stdout.splitlines(), ["C7", "D8"], energies, strict=True):
+            self.assertRegex(line, rf"^{name}: E = {energy} V\^2 s, U = \S+ V\^2 s \(k = 2\), in band 1\.196 %, 1 warnings$")
+
     def test_tables_that_are_refused_are_passed_by(self):
         for name in ("handheld_160hz.csv", "khz.csv"):
             shutil.copy(PROJECT / "host_tests/data/tables" / name, self.directory)

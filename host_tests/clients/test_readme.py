@@ -5,6 +5,7 @@ usage: test_readme.py PROGRAM PROJECT_DIRECTORY
 
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -18,7 +19,8 @@ import in_band_picture
 from instruments import HostProgram
 
 PROGRAM, PROJECT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
-README = (PROJECT / "README.md").read_text()
+README = (PROJECT / "README.md").read_text(encoding="utf-8")
+DESK = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
 CLAIMS = (PROJECT / "host_tests/reference/README.md").read_text(encoding="utf-8")
 SHOWN = PROJECT / "firmware/desk/pictures/readme"
 ADDRESS = "TCPIP::127.0.0.1::5025::SOCKET"
@@ -47,10 +49,10 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         return result.stdout
 
-    def block_after(self, words: str) -> str:
+    def block_after(self, words: str, text: str = README) -> str:
         """The first block after these words."""
-        self.assertEqual(README.count(words), 1, words)
-        return re.search(r"^```\n((?:.*\n)*?)```$", README.split(words)[1], re.MULTILINE)[1]
+        self.assertEqual(text.count(words), 1, words)
+        return re.search(r"^```\n((?:.*\n)*?)```$", text.split(words)[1], re.MULTILINE)[1]
 
     def assert_excerpt(self, excerpt: str, printed: str) -> None:
         """Each paragraph of the excerpt stands in what was printed, in this order; `...` leaves lines out."""
@@ -62,7 +64,8 @@ class ReadmeTest(unittest.TestCase):
             place = found + 1 + len(lines)
 
     def assert_shown(self, picture: str, drawn: pathlib.Path) -> None:
-        self.assertIn(f"({SHOWN.relative_to(PROJECT)}/{picture})", README)
+        links = [f"({SHOWN.relative_to(PROJECT)}/{picture})" in README, f"({SHOWN.relative_to(PROJECT / 'firmware/desk')}/{picture})" in DESK]
+        self.assertIn(True, links)
         self.assertEqual(texts_of(SHOWN / picture), texts_of(drawn))
         shown, fresh = [path.read_text(encoding="utf-8") for path in [SHOWN / picture, drawn]]
         if re.search("<desc>.*</desc>", shown)[0] == re.search("<desc>.*</desc>", fresh)[0]:
@@ -80,7 +83,8 @@ class ReadmeTest(unittest.TestCase):
 
     def test_report_and_its_pictures(self):
         printed = self.print_of("build/host/emax report --out results")
-        self.assert_excerpt(self.block_after("(shortened):"), printed)
+        self.assert_excerpt(self.block_after("#the-report-line-by-line)):"), printed)
+        self.assert_excerpt(self.block_after("without what was put in (shortened):", DESK), printed)
         drawn = sorted(path.name for path in (self.directory / "results").glob("*.svg"))
         self.assertEqual(len(drawn), 5)
         self.assertEqual(sorted(path.name for path in SHOWN.iterdir()), sorted(["comparison.svg", "in_band.csv", "in_band.svg", *drawn]))
@@ -90,6 +94,23 @@ class ReadmeTest(unittest.TestCase):
     def test_report_of_poor_data(self):
         command = "build/host/emax report --points host_tests/data/djb_a1800v.csv"
         self.assert_excerpt(self.block_after(f"`{command}`. Poor\ndata get a plain warning:"), self.print_of(command))
+
+    def test_what_points_have_in_common(self):
+        """The number that the texts give for the tables of the tour is the one that the bench they are from has."""
+        parts = [float(part) for part in re.search(r"√\((.*)²\) = ", README)[1].split("² + ")]
+        total, given = re.search(r"²\) = (\S+), given as (\S+):", README).groups()
+        self.assertEqual(total, f"{math.hypot(*parts):.4f}")
+        report = self.print_of("build/host/emax report --trials 1000 --trend none")
+        reference, mounting, gains = parts
+        for words in [f"V/(m/s^2), U = {reference:g} % (k = 2)", f"(device, U = {gains:g} %)", f"U = {mounting:g} %, with transverse"]:
+            self.assertIn(words, report)
+        for text in [README, DESK]:
+            self.assertEqual(set(re.findall(r"--reference-uncertainty ([\d.]+)", text)), {given})
+        self.assertLess(float(given), float(total))
+        # With it the points scatter as much as they should.
+        table = "host_tests/data/devices/piezo_a.csv"
+        model = json.loads(self.print_of(f"build/host/emax report --points {table} --reference-uncertainty {given} --trials 1000 --json"))["model"]
+        self.assertAlmostEqual(model["chi2"] / model["dof"], 1.0, delta=math.sqrt(2 / model["dof"]))
 
     def test_energy_of_each_order(self):
         start = "build/host/emax report --model 1.037,4073,0.3182 --trend none --order"

@@ -503,6 +503,42 @@ class FigureWords(ProgramTest):
             self.assertIn("at the estimates", line)
         self.assertRegex(text, r"Std deviation over box +1\.1e-05 V\^2 s|Std deviation over box +1\.1\de-05")
 
+    def test_in_band_figures_have_their_names_and_order(self):
+        """Those of the table that leads the report, in front of the numbers that they are about."""
+        names = {"matched": "In band, constant delay taken out", "band": "In band, with its delay"}
+        for options, order in [([], ["matched", "band"]), (["--reference-delay", "none"], ["band", "matched"]),
+                               (["--reference-delay", "2e-5"], ["given", "band"])]:
+            with self.subTest(order=order):
+                text = self.succeed("report", "--model", PAPER, "--trend", "none", *options)
+                in_band = text[text.index("IN-BAND ERROR"):text.index("UNCERTAINTY OF E")]
+                expected = [names.get(name, "In band, given delay taken out") for name in order]
+                self.assertEqual(re.findall(r"^  (In band, .*)$", in_band, re.MULTILINE), expected)
+                self.assertEqual(re.findall(r"^  (In band, .*?)  ", text[:text.index("WHAT WAS PUT IN")], re.MULTILINE), expected)
+                found = self.json_of("--model", PAPER, "--trend", "none", *options)["band"]
+                energies = [(found if name == "band" else found["matched"])["E"] for name in order]
+                printed = re.findall(r"^  E  +(\S+) V\^2 s$", in_band, re.MULTILINE)
+                self.assertEqual(printed, [f"{energy:.8e}" for energy in energies])
+
+    def test_approximation_that_no_digit_shows_is_not_told(self):
+        for order, is_told in [(10, False), (4, True)]:
+            matched = self.json_of("--model", PAPER, "--trend", "none", "--order", order)["band"]["matched"]
+            self.assertEqual(matched["epsilon_percent"] > 5e-6 * matched["rms_percent"], is_told)
+            text = self.succeed("report", "--model", PAPER, "--trend", "none", "--order", order)
+            self.assertNotIn("true delay", text)
+            told = re.findall(r"  Approximation +of the delay: the true rms may differ by (\S+) % of S a\n", text)
+            self.assertEqual(told, [f"{matched['epsilon_percent']:.2g}"] if is_told else [])
+
+    def test_many_switches_are_counted_and_some_shown(self):
+        options = ["--model", PAPER, "--trend", "none", "--time", "0.04"]
+        switches = self.json_of(*options)["band"]["switches"]
+        self.assertGreater(switches, 60)
+        text = self.succeed("report", *options)
+        block = text[text.index("  In band, with its delay\n"):]
+        block = block[block.index("  Signal"):block.index("  Upper bound")].splitlines()
+        self.assertEqual(block[0].split(None, 1)[1], f"+a from the start, {switches} switches, the first 60, at (ms)")
+        self.assertEqual([len(line.split()) for line in block[1:]], [6] * 10)
+        self.assertLessEqual(max(map(len, block)), 98)
+
     def test_page_of_the_in_band_error(self):
         self.succeed("report", "--model", PAPER + ",0.003,6,0.0004", "--trials", "1000", "--trend", "none", "--criterion", "band",
                      "--out", "out")

@@ -104,8 +104,8 @@ const char* explain(Status status) noexcept {
       return "The delay is below 0 or longer than 1/(2 pi cutoff); lower the cutoff, or take no "
              "delay out.";
     case Status::kDelayNotResolved:
-      return "The delayed filter is not exact enough for an error as small as this; take a higher "
-             "order, or take no delay out.";
+      return "At this order the delay cannot be taken out exactly enough; take a higher order, or "
+             "take no delay out.";
     case Status::kLostDigits:
       return "The error is the difference of two outputs, and so small beside them that rounding "
              "hides it; take a longer time, or another cutoff or order.";

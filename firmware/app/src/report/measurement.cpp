@@ -222,9 +222,9 @@ struct Column {
 constexpr Column kFrequency = {10, "f", "Hz"};
 constexpr Column kAmplitude = {12, "A", "V/(m/s^2)"};
 constexpr Column kAmplitudePerG = {12, "A", "V/g"};
-constexpr Column kRest[] = {{10, "phase", "deg"}, {9, "noise", "%"},      {9, "quant.", "%"},
-                            {9, "hum", "%"},      {10, "distort.", "%"},  {9, "shared", "%"},
-                            {9, "U(A)", "%"},     {11, "U(phase)", "deg"}};
+constexpr Column kRest[] = {{9, "phase", "deg"}, {8, "noise", "%"},       {10, "ADC step", "%"},
+                            {8, "hum", "%"},     {12, "distortion", "%"}, {9, "shared", "%"},
+                            {9, "U(A)", "%"},    {11, "U(phase)", "deg"}};
 
 void write_budget_head(const char* const Column::*words, ReportWriter& out) noexcept {
   out.part(ReportPart::kHead);
@@ -251,11 +251,11 @@ void write_budget_row(const SweepPoint& point, const CommonBudget& common, int d
     const int less = decimals > 0 ? decimals - 1 : 0;
     out.cell(12).fixed(kStandardGravity_mps2 * response.amplitude, less);
   }
-  out.cell(10).fixed(kDegreesPerRadian * response.phase_rad, 3);
-  percent(out.cell(9), budget.noise);
-  percent(out.cell(9), budget.quantisation);
-  percent(out.cell(9), budget.hum);
-  percent(out.cell(10), budget.distortion);
+  out.cell(9).fixed(kDegreesPerRadian * response.phase_rad, 3);
+  percent(out.cell(8), budget.noise);
+  percent(out.cell(10), budget.quantisation);
+  percent(out.cell(8), budget.hum);
+  percent(out.cell(12), budget.distortion);
   percent(out.cell(9), budget.shared);
   percent(out.cell(9), kCoverageFactor * total_u(point, common) / response.amplitude);
   out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
@@ -270,7 +270,10 @@ void write_budget(const SweepResults& sweep, ReportWriter& out) noexcept {
       .text(
           "\n  Uncertainty budget in the manner of ISO 16063-21: standard uncertainties of each "
           "point by\n"
-          "  itself, then the expanded ones (k = 2), U(A) with what is common to all points.\n\n");
+          "  itself, then the expanded ones (k = 2), U(A) with what is common to all points.\n"
+          "  Noise: scatter of the repeats. Distortion: harmonics. Shared: clock, drift, "
+          "crosstalk\n"
+          "  and linearity.\n\n");
   out.part(ReportPart::kTable);
   write_budget_head(&Column::name, out);
   write_budget_head(&Column::unit, out);

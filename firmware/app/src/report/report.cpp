@@ -130,7 +130,7 @@ void write_method(const EvaluationResults& results, ReportWriter& out) noexcept 
       out.text("energy difference: E(sensor) minus E(filter), equations (5), (13)");
       break;
     case Criterion::kInBandError:
-      out.text("in-band error: energy of the filter on sensor minus G x");
+      out.text("in-band error: energy of sensor minus G x, behind the filter");
       write_delay(results, out);
       break;
   }
