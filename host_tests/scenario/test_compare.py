@@ -454,7 +454,7 @@ class CompareOnOneSide(Comparing, ProgramTest):
         self.assertIn("its interval from -0.0040 to 0.020 % of S a", " ".join(text.split()))
         self.assertIn("The delay taken out stays that of the estimate", " ".join(text.split()))
         page = (self.directory / "out/comparison.html").read_text(encoding="utf-8")
-        self.assertIn("<dt>Least error found (interval)</dt><dd>0.0001385 (0 to 0.024) % of S a</dd>", page)
+        self.assertIn("<dt>Least error found (interval)</dt><dd>0.0001385 (0 to 0.024) % of S&nbsp;a</dd>", page)
         headline = page[page.index('<dl class="headline">'):page.index("</dl>")]
         self.assertNotRegex(headline, "[\u2212-]0|0\\.0+[ <]")
         # Value, ends of the bar, bound, and row; the lower end no lower than the axis.
@@ -672,7 +672,7 @@ class ComparePage(Comparing, ProgramTest):
         page = self.page(result(matched=1.196, u_band=0.004, device="DJB A/1800/V"), result(matched=2.0, device="B"))
         self.assertIn("<title>Comparison of 2 accelerometers - emax</title>", page)
         self.assertIn("<dt>Smallest error</dt><dd>DJB A/1800/V</dd>", page)
-        self.assertIn("<dd>1.1960 ± 0.0080 % of S a</dd>", page)
+        self.assertIn("<dd>1.1960 ± 0.0080 % of S&nbsp;a</dd>", page)
         self.assertIn("<th scope=\"row\">DJB A/1800/V and B</th><td>told apart: the difference is 0.804 % of S a", page)
         self.assertIn("<svg", page)
         self.assertNotIn("SIMULATION", page)
@@ -729,6 +729,13 @@ class ComparePage(Comparing, ProgramTest):
             self.assertAlmostEqual(float(box[0]), 595.3, delta=1)
             self.assertAlmostEqual(float(box[1]), 841.9, delta=1)
         self.assertLessEqual(len(boxes), 4)
+
+    def test_two_and_three_devices_are_one_sheet(self):
+        with Browser() as browser:
+            for count in (2, 3):
+                self.page(*(result(matched=1.0 + i, device=f"Device {i}") for i in range(count)))
+                browser.open(self.directory / "out/comparison.html", 680)
+                self.assertEqual(len(re.findall(rb"/Type\s*/Page\b", browser.pdf())), 1, count)
 
 
 class CompareRefusals(Comparing, ProgramTest):

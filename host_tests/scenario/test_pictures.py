@@ -930,6 +930,9 @@ class Certificate(PageTest, ProgramTest):
             found = [page for page in pages if re.search(rf"^ *{heading}$", page, re.MULTILINE)]
             self.assertEqual(len(found), 1, heading)
             self.assertIn(caption, " ".join(found[0].lower().split()))
+        # Nor is the name of a figure parted from its numbers.
+        for page in pages:
+            self.assertNotRegex(page, r"(?m)^ *In band, [^\n0-9]*\n\s*(Report|Certificate), ")
         # Folded on the screen, but on paper to its last row.
         self.assertRegex(self.pages()[-1], r"(?m)^ *6000 ")
 

@@ -63,7 +63,13 @@ std::string figure_with_uncertainty(const Comparison& comparison, const Result& 
   } else if (figure.has_uncertainty) {
     text += " +- " + expanded_text(figure, by);
   }
-  return html_of_numbers(text) + html_of(figure_words(by).unit);
+  // The unit stays in one piece.
+  std::string unit = html_of(figure_words(by).unit);
+  const std::size_t product = unit.find("S a");
+  if (product != std::string::npos) {
+    unit.replace(product, 3, "S&nbsp;a");
+  }
+  return html_of_numbers(text) + unit;
 }
 
 // What stands beside the figure.

@@ -44,6 +44,7 @@ sup { line-height: 0; }
 details { margin: .8rem 0; }
 summary { cursor: pointer; font-weight: bold; }
 .certificate p { max-width: 46rem; }
+#in-band .text:has(+ .rows) { font-weight: bold; }
 .signature { margin: 3rem 0 0; padding-top: .3rem; border-top: 1px solid var(--text); max-width: 30rem; }
 .end { margin: 1.5rem 0; text-align: center; color: var(--soft); }
 .watermark { display: none; }
@@ -86,25 +87,28 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   figure { overflow-x: auto; }
   figure svg { min-width: 36rem; }
 }
-@page { size: A4; margin: 15mm 15mm 18mm; }
+@page { size: A4; margin: 13mm 15mm 16mm; }
 @media print {
   :root { --text: #000000; --soft: #404040; --line: #a0a0a0; --paper: #ffffff; --warn: #000000;
     --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
   html { font-size: 9.5pt; }
-  body { max-width: none; padding: 0; }
-  h2 { margin-top: 1.3rem; }
-  footer { margin-top: 1.2rem; }
+  body { max-width: none; padding: 0; line-height: 1.35; }
+  h2 { margin-top: 1rem; padding-top: .4rem; }
+  .headline { margin: .6rem 0; padding: .7rem; }
+  .rows th, .rows td { padding-top: .08rem; padding-bottom: .08rem; }
+  footer { margin-top: .5rem; padding-top: .3rem; }
   /* The header of a table stands on every page. */
   .marked { display: table; width: 100%; }
   .marked .banner { display: table-header-group; break-inside: avoid; position: static; color: #000000; background: none; line-height: 2; }
   .marked main, .marked footer { display: table-row-group; }
-  figure { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  figure svg { max-height: 76mm; }
+  figure { margin: .7rem 0; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  figure svg { max-height: 80mm; }
   #fit svg { max-height: 105mm; }
-  #ranking svg { max-height: 230mm; }
+  #ranking svg { max-height: 230mm; max-width: 130mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
   figure, tr, li, .headline, .warning, .note, .sign { break-inside: avoid; }
   summary { break-after: avoid; }
+  #in-band .text:has(+ .rows) { break-after: avoid; }
   /* No first or last row alone on a page. */
   .rows tr:first-child { break-after: avoid; }
   .rows tr:last-child { break-before: avoid; }
