@@ -1,9 +1,10 @@
 """Runs the tests of a build tree one after the other and lists those that take long.
 
-usage: long_tests.py CTEST TREE LIST
+usage: long_tests.py CTEST TREE LIST [SECONDS]
 
-A time is what a test takes of a processor, so it matters little what else runs. The list has no names of configurations:
-it holds for all builds for a PC.
+With SECONDS, only those of GoogleTest are listed that take more. The head of the list stays as it is. A time is what a test
+takes of a processor, so it matters little what else runs. The list has no names of configurations: it holds for all
+builds for a PC.
 """
 
 import json
@@ -13,25 +14,22 @@ import subprocess
 import sys
 from pathlib import Path
 
-LONG_S = 1.0
-HEAD = """\
-Tests that take more than a second of a processor: they get the label `long`, which the workflow `quick` leaves out.
-Written by the target long_tests of build/host.
-
-"""
-
 
 def main() -> int:
     ctest, tree, list_file = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+    long_s = float(sys.argv[4]) if len(sys.argv) > 4 else 1.0
     shown = subprocess.run([ctest, "--show-only=json-v1"], cwd=tree, stdout=subprocess.PIPE, check=True).stdout
     long, total_s = {}, 0.0
     tests = json.loads(shown)["tests"]
+    if len(sys.argv) > 4:
+        tests = [test for test in tests if any(word.startswith("--gtest_filter=") for word in test["command"])]
     for test in tests:
         seconds = time_of(test)
         total_s += seconds
-        if seconds > LONG_S:
+        if seconds > long_s:
             long[test["name"].partition(".")[2]] = seconds
-    list_file.write_text(HEAD + "".join(f"{name} {long[name]:.0f} s\n" for name in sorted(long)))
+    head = list_file.read_text().partition("\n\n")[0]
+    list_file.write_text(head + "\n\n" + "".join(f"{name} {long[name]:.0f} s\n" for name in sorted(long)))
     print(f"{len(long)} of {len(tests)} tests are long: {sum(long.values()):.0f} of {total_s:.0f} s")
     return 0
 

@@ -23,8 +23,8 @@ constexpr Duration kPatience{10'000};
 constexpr Duration kStopPatience{2'000};
 constexpr Duration kBetweenLooks{100};
 constexpr std::size_t kLongestLine = 65'536;
-// A tenth of what a serial line brings.
-constexpr std::size_t kBytesPerSecond = 1'152;
+// A fiftieth of what a serial line brings: an emulated board on a busy PC takes its time.
+constexpr std::size_t kBytesPerSecond = 230;
 constexpr int kGreetingLines = 16;
 constexpr std::size_t kShown = 60;     // Of what somebody else answers.
 constexpr unsigned kBusyBits = 0x118;  // Sweeping, measuring, computing.
