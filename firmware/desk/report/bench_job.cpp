@@ -58,7 +58,7 @@ std::string words_on(const app::SweepResults& sweep) {
     (void)std::snprintf(level, sizeof level, "five steps of the drive's converter make %.2g m/s^2",
                         least_mps2);
   }
-  const std::string words = in_line(explain(sweep.status));
+  std::string words = in_line(explain(sweep.status));
   if (sweep.status == Status::kSaturated) {
     const std::string cause = least_mps2 > 0.0
                                   ? "; " + std::string(level) +
