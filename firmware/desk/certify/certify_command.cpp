@@ -689,7 +689,7 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.evaluation = &evaluation;
   result.default_time_s = default_s;
   if (evaluation.source == app::Source::kPoints) {
-    result.cause = joined(imported.doubt, cause_of(evaluation.fit, imported.names_phase_unit));
+    result.cause = cause_of_table(evaluation.fit, imported);
   }
   result.proven.box = box.get();
   result.proven.model = &model;

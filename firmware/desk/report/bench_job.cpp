@@ -9,6 +9,7 @@
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
+#include "desk/report/failure_words.hpp"
 #include "desk/report/unstruck_faults.hpp"
 
 namespace emax::desk {
@@ -41,13 +42,6 @@ std::string stage_of(const app::SweepResults& sweep) {
       break;
   }
   return "sweep,";
-}
-
-// "The channel ...; check ... ." as the end of a line.
-std::string in_line(std::string sentence) {
-  sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
-  sentence.pop_back();
-  return sentence;
 }
 
 // With what an option can do about it.

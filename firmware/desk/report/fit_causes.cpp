@@ -140,10 +140,6 @@ std::string cause_of_measured(const Wlsp& fit) {
   return lone.frequencies_hz.empty() ? "" : words_of_lone_points(lone);
 }
 
-std::string joined(const std::string& first, const std::string& second) {
-  return first + (first.empty() || second.empty() ? "" : " ") + second;
-}
-
 std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
   const auto workspace = std::make_unique<DiagnosisWorkspace>();
   const FitDiagnosis diagnosis = diagnose(fit, *workspace);
@@ -171,6 +167,11 @@ std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
                        ": name their unit in the header, or by --input-units.";
   }
   return "";
+}
+
+std::string cause_of_table(const Wlsp& fit, const ImportedPoints& imported) {
+  const std::string cause = cause_of(fit, imported.names_phase_unit);
+  return imported.doubt + (imported.doubt.empty() || cause.empty() ? "" : " ") + cause;
 }
 
 }  // namespace emax::desk

@@ -5,6 +5,8 @@
 
 #include "emax/identify/wlsp.hpp"
 
+#include "desk/import/import_points.hpp"
+
 namespace emax::desk {
 
 /// @returns A sentence on the cause whose signature the points have (`diagnose()`), with what to
@@ -19,7 +21,7 @@ std::string cause_of(const Wlsp& fit, bool is_phase_unit_named);
 /// if more than an eighth of the points, or than four, are off.
 std::string cause_of_measured(const Wlsp& fit);
 
-/// @returns The sentences of both.
-std::string joined(const std::string& first, const std::string& second);
+/// @returns What the reader of the table doubts, and `cause_of()`.
+std::string cause_of_table(const Wlsp& fit, const ImportedPoints& imported);
 
 }  // namespace emax::desk

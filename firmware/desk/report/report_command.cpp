@@ -261,11 +261,6 @@ Problem give_sensitivity(const Results& results, bool json, OutputFiles* files) 
   return json ? print(object) : print(text);
 }
 
-std::string cause_of_table(const app::EvaluationResults& evaluation,
-                           const ImportedPoints& imported) {
-  return joined(imported.doubt, cause_of(evaluation.fit, imported.names_phase_unit));
-}
-
 // Where the eyes are, too.
 Problem remark_on_table(const ReportOptions& options, const ImportedPoints& imported) {
   const std::string& doubt = imported.doubt;
@@ -315,7 +310,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
   const bool is_measured = options.measures() && evaluation.has_fit();
-  const std::string cause = has_table     ? cause_of_table(evaluation, imported)
+  const std::string cause = has_table     ? cause_of_table(evaluation.fit, imported)
                             : is_measured ? cause_of_measured(evaluation.fit)
                             : is_sensitivity_alone(evaluation, options)
                                 ? words_on_damping(frequency_by_damping(imported.points))
