@@ -42,7 +42,7 @@ class ReadmeTest(unittest.TestCase):
         """A command of the README, run as if beside it, in an empty directory."""
         line = command.replace("build/host/emax", f"'{PROGRAM}'").replace("host_tests/", f"'{PROJECT}'/host_tests/")
         self.assertIn(PROGRAM, line)
-        return subprocess.run(line, shell=True, cwd=self.directory, capture_output=True, text=True, timeout=100)
+        return subprocess.run(line, shell=True, cwd=self.directory, capture_output=True, text=True, timeout=500)
 
     def print_of(self, command: str) -> str:
         result = self.run_line(command)

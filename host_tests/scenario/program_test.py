@@ -35,7 +35,7 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, *arguments, **options) -> subprocess.CompletedProcess:
         settings = {"stdin": subprocess.DEVNULL} if "input" not in options else {}
-        settings |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 100, "cwd": self.directory}
+        settings |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 500, "cwd": self.directory}
         result = subprocess.run([PROGRAM, *map(str, arguments)], check=False, **(settings | options))
         self.check_results([*map(str, arguments)], result.stdout)
         return result
