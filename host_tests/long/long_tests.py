@@ -2,9 +2,9 @@
 
 usage: long_tests.py CTEST TREE LIST [SECONDS]
 
-With SECONDS, only those of GoogleTest are listed that take more, and lines of the program's classes stay. The head of the list stays as it is. A time is what a test
-takes of a processor, so it matters little what else runs. The list has no names of configurations: it holds for all
-builds for a PC.
+With SECONDS, only those of GoogleTest are listed that take more, and lines of the program's classes stay. The head of the
+list stays as it is. A time is what a test takes of a processor, so it matters little what else runs. The list has no
+names of configurations: it holds for all builds for a PC.
 """
 
 import json
@@ -29,12 +29,12 @@ def main() -> int:
         total_s += seconds
         if seconds > long_s:
             long[test["name"].partition(".")[2]] = seconds
+    print(f"{len(long)} of {len(tests)} tests are long: {sum(long.values()):.0f} of {total_s:.0f} s")
     head, _, lines = list_file.read_text().partition("\n\n")
     if len(sys.argv) > 4:
         for name, seconds in re.findall(r"^(scenario\.\S+) (\d+) s$", lines, re.MULTILINE):
             long[name] = float(seconds)
     list_file.write_text(head + "\n\n" + "".join(f"{name} {long[name]:.0f} s\n" for name in sorted(long)))
-    print(f"{len(long)} of {len(tests)} tests are long: {sum(long.values()):.0f} of {total_s:.0f} s")
     return 0
 
 
