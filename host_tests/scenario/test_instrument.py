@@ -138,11 +138,43 @@ class InstrumentSweeps(ProgramTest):
             other = name.replace("local", "remote")
             self.assertEqual((self.directory / other).read_bytes(), (self.directory / name).read_bytes(), name)
 
-    def test_settings_of_before_do_not_count(self) -> None:
+    def test_what_the_sweep_is_made_of_is_set(self) -> None:
         with TcpInstrument() as remote:
-            remote.ask("SOUR:LEV 5;:SENS:SWE:FREQ 100,200,300;:SYST:ERR?")
+            remote.ask("SOUR:LEV 5;:SENS:SWE:FREQ 100,200,300;:SENS:SWE:CYCL 90;REP 3;SETT 0.5;:SYST:ERR?")
             result = json.loads(self.succeed("report", "--instrument", remote.port, *QUICK, "--json"))
+            self.assertEqual(remote.ask("SENS:SWE:CYCL?;REP?;SETT?"), "3;5;1.0E-2")
         self.assertEqual((result["bench"]["level"], result["bench"]["points"]), (1, 42))
+
+    # A limit for an amplifier, what a front end makes of the channels, and a reference: nobody may lose them by a report.
+    BENCH = ("SOUR:LIM:VOLT 1", "SOUR:FULL 6", "SENS:REF:FULL 10.99", "SENS:DEV:FULL 10.98", "SOUR:LIM 2", "SENS:DEV:GAIN 1,0.2",
+             "SENS:REF:TABL 10,0.1,9000,0.11", "SENS:CORR:SKEW 1.25E-6,1E-8", "SENS:MOUN:UNC 0.3")
+    ASKED = "SOUR:LIM:VOLT?;:SOUR:FULL?;:SENS:REF:FULL?;:SENS:DEV:FULL?;:SOUR:LIM?;:SENS:DEV:GAIN?;:SENS:REF:TABL?;SENS?;" \
+            ":SENS:CORR:SKEW?;:SENS:MOUN:UNC?"
+
+    def test_the_bench_stays_as_the_instrument_was_told(self) -> None:
+        with TcpInstrument() as remote:
+            self.assertEqual(remote.ask(":" + ";:".join(self.BENCH) + ";:SYST:ERR?"), '0,"No error"')
+            before = remote.ask(self.ASKED)
+            self.run_program("report", "--instrument", remote.port, "--frequencies", "80,160,320", *QUICK)
+            self.assertEqual(remote.ask(self.ASKED), before)
+            self.assertEqual(before, "1;6;10.99;10.98;2;1,2.0E-1;10,1.0E-1,9000,1.1E-1;1.0E-1,5.0E-1;1.25E-6,1.0E-8;3.0E-1")
+
+    def test_what_is_given_of_the_bench_is_set_even_if_it_is_the_default(self) -> None:
+        with TcpInstrument() as remote:
+            remote.ask(":" + ";:".join(self.BENCH) + ";:SYST:ERR?")
+            self.run_program("report", "--instrument", remote.port, "--frequencies", "80,160,320", "--drive-limit", "5",
+                             "--device-gain", "1.5", "--reference-uncertainty", "0.7", "--correction-skew", "0,0", *QUICK)
+            self.assertEqual(remote.ask(self.ASKED),
+                             "5;6;10.99;10.98;2;1.5,2.0E-1;10,1.0E-1,9000,1.1E-1;1.0E-1,7.0E-1;0,0;3.0E-1")
+            self.run_program("report", "--instrument", remote.port, "--frequencies", "80,160,320",
+                             "--reference-sensitivity", "0.2", *QUICK)
+            self.assertEqual(remote.ask("SENS:REF:TABL?;SENS?"), "0,2.0E-1;2.0E-1,7.0E-1")
+
+    def test_a_limit_below_the_level_of_before(self) -> None:
+        with TcpInstrument() as remote:
+            remote.ask("SOUR:LIM 40;LEV 25;:SYST:ERR?")
+            self.succeed("report", "--instrument", remote.port, "--acceleration-limit", "3", *QUICK)
+            self.assertEqual(remote.ask("SOUR:LIM?;LEV?"), "3;1")
 
 
 class InstrumentFaults(ProgramTest):
@@ -171,7 +203,7 @@ class InstrumentFaults(ProgramTest):
             self.refuse(["report", "--instrument", peer.port], "OTHER,1,2,3;0", "expected an emax", status=3)
 
     def test_one_that_goes_away(self) -> None:
-        for answers in ({b"*IDN": b"emax,x,0,1;0\n"}, {b"*IDN": b"emax,x,0,1;0\n", b"RST": b'0,"No error"\n'}):
+        for answers in ({b"*IDN": b"emax,x,0,1;0\n"}, {b"*IDN": b"emax,x,0,1;0\n", b"CLS": b'0,"No error"\n'}):
             def behave(peer, answers=answers):
                 with peer.makefile("rb") as lines:
                     for line in lines:
@@ -231,7 +263,7 @@ class InstrumentFaults(ProgramTest):
                 self.assertAlmostEqual(float(one), float(other), delta=1e-12 * abs(float(other)))
 
     def test_one_whose_answer_is_no_sweep(self) -> None:
-        talk = {b"*IDN": b"emax,x,0,1;0\n", b"SYST:ERR": b'0,"No error"\n', b"PROG": b'100,"idle";0;0\n'}
+        talk = {b"*IDN": b"emax,x,0,1;0\n", b"LEV?": b"1\n", b"SYST:ERR": b'0,"No error"\n', b"PROG": b'100,"idle";0;0\n'}
         for json_answer, words in ((b"#15{\"a\":\n", "no JSON"), (b"#12{}\n", "does not tell the setting"),
                                    (b"1\n", "not answered with a block")):
             with Peer(answer_lines(talk | {b"JSON": json_answer})) as peer:

@@ -248,9 +248,11 @@ std::vector<Option> device_options(ReportOptions& options) {
                 options.points_path)
       .add_text("instrument", "PORT", "HOST:PORT or a serial line",
                 "a board with emax that measures: HOST:PORT, or a\n"
-                "serial line such as /dev/ttyACM0. It gets its defaults\n"
-                "(*RST), then the options below, and measures; this\n"
-                "program evaluates. Ctrl-C stops the board's sweep, too",
+                "serial line such as /dev/ttyACM0. Its limits, full\n"
+                "scales, gains, reference and corrections stay as they\n"
+                "are set there, but for what is given; *RCL 1 before\n"
+                "recalls what was saved. This program evaluates. Ctrl-C\n"
+                "stops the board's sweep, too",
                 options.instrument)
       .add("model", "S,f0,beta[,uS,uf0,ubeta]", "",
            "three or six numbers, S,f0,beta[,uS,uf0,ubeta]",

@@ -160,6 +160,15 @@ std::vector<app::NamedLabel> ReportOptions::more_labels() const {
   return more;
 }
 
+const std::string* ReportOptions::given_value(std::string_view name) const noexcept {
+  for (const GivenText& option : given) {
+    if (option.name == name) {
+      return &option.value;
+    }
+  }
+  return nullptr;
+}
+
 app::Labels ReportOptions::labels(const std::vector<app::NamedLabel>& more) const noexcept {
   return {or_null(device_name), or_null(serial), or_null(operated_by),
           or_null(date),        or_null(note),   {more.data(), more.size()}};
@@ -178,6 +187,10 @@ Problem parse_report_options(Span<const std::string_view> arguments, ReportOptio
 Problem check_report_options(const std::vector<Given>& all, ReportOptions& options) {
   if (Problem problem = check_source(all, options)) {
     return problem;
+  }
+  options.given.clear();
+  for (const Given& given : all) {
+    options.given.push_back({given.option->name, std::string(given.value)});
   }
   tell_sweep_about_bench(all, options);
   return check_settings(all, options);

@@ -29,6 +29,12 @@ struct OwnLabel {
   std::string words;
 };
 
+/// An option with its value, as they were given.
+struct GivenText {
+  std::string name;  ///< Without dashes.
+  std::string value;
+};
+
 /// What the command line asks for. The device comes from `points_path`, from `model_text`, or, with
 /// neither, from a measurement: of the instrument at a port, or on the simulated bench.
 struct ReportOptions {
@@ -52,11 +58,14 @@ struct ReportOptions {
   std::string note;
   std::array<std::string, kLabelRowCount> certificate;  ///< By `kLabelRows`; empty if not given.
   std::vector<OwnLabel> own_labels;
+  std::vector<GivenText> given;  ///< What the command line says, in its order.
   bool in_g = false;
   bool json = false;
   std::string out_directory;  ///< Empty for no files.
   std::string dcc_path;       ///< Of the digital certificate; empty for none.
 
+  /// @returns The value that an option was given; null if it was not given.
+  const std::string* given_value(std::string_view name) const noexcept;
   bool measures() const noexcept { return points_path.empty() && model_text.empty(); }
   const std::string& label(CertificateLabel label) const noexcept {
     return certificate[static_cast<std::size_t>(label)];

@@ -1,8 +1,10 @@
 // The conversation with an instrument.
 #include "desk/instrument/instrument_client.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <string_view>
 
 #include "emax/app/settings/sweep_settings_rows.hpp"
 
@@ -49,6 +51,22 @@ std::string header_of(const app::SettingRow& row) {
 
 bool is_list(const app::SettingField& field) {
   return field.kind == app::SettingKind::kNumbers || field.kind == app::SettingKind::kMoreNumbers;
+}
+
+// Not of the bench, whose description stays where it was told.
+bool is_of_the_sweep(const app::SettingRow& row) {
+  constexpr std::string_view kNames[] = {"level", "settle", "cycles", "repeats"};
+  return std::find(std::begin(kNames), std::end(kNames), row.option.name) != std::end(kNames);
+}
+
+// "f1,S1,f2,S2"; "0,S" where it is one value.
+std::string table_of(const app::ReferenceCalibration& reference) {
+  std::string table;
+  for (std::size_t i = 0; i < reference.count; ++i) {
+    table += (i > 0 ? "," : "") + number_text(reference.frequency_hz[i]) + "," +
+             number_text(reference.sensitivity[i]);
+  }
+  return table;
 }
 
 std::string frequencies_of(const app::SweepSettings& sweep) {
@@ -199,31 +217,35 @@ Problem InstrumentClient::set(const std::string& command, const std::string& opt
                    printable(error));
 }
 
-Problem InstrumentClient::set_reference(const app::ReferenceCalibration& reference,
-                                        const app::ReferenceCalibration& defaults) {
-  if (reference.count > 1) {
-    std::string table;
-    for (std::size_t i = 0; i < reference.count; ++i) {
-      table += (i > 0 ? "," : "") + number_text(reference.frequency_hz[i]) + "," +
-               number_text(reference.sensitivity[i]);
-    }
-    if (Problem problem = set(":SENS:REF:TABL " + table, "--reference-table")) {
+// A single value takes the place of a table, and a table keeps the uncertainty that was set with a
+// value: so the value comes first, of the table that is there if none is given.
+Problem InstrumentClient::set_reference(const ReportOptions& options) {
+  const app::ReferenceCalibration& reference = options.sweep.reference;
+  const bool is_given = options.given_value("reference-sensitivity") != nullptr ||
+                        options.given_value("reference-table") != nullptr;
+  const bool has_uncertainty = options.given_value("reference-uncertainty") != nullptr;
+  if (!is_given && !has_uncertainty) {
+    return {};
+  }
+  std::string table = table_of(reference);
+  if (!is_given) {
+    if (Problem problem = ask(":SENS:REF:TABL?", table)) {
       return problem;
     }
   }
-  const bool is_same_value =
-      reference.count > 1 || (reference.sensitivity[0] == defaults.sensitivity[0]);
-  if (is_same_value && reference.expanded_percent == defaults.expanded_percent) {
-    return {};
+  const std::size_t comma = table.find(',');
+  const std::string value = table.substr(comma + 1, table.find(',', comma + 1) - comma - 1);
+  const bool is_table = std::strtod(table.c_str(), nullptr) > 0.0;
+  if (has_uncertainty || !is_table) {
+    const std::string percent =
+        has_uncertainty ? "," + number_text(reference.expanded_percent) : std::string();
+    if (Problem problem =
+            set(":SENS:REF:SENS " + value + percent,
+                has_uncertainty ? "--reference-uncertainty" : "--reference-sensitivity")) {
+      return problem;
+    }
   }
-  if (reference.count > 1) {
-    return bad_input(
-        "--reference-uncertainty: a board takes none together with --reference-table; leave it "
-        "out");
-  }
-  return set(":SENS:REF:SENS " + number_text(reference.sensitivity[0]) + "," +
-                 number_text(reference.expanded_percent),
-             "--reference-uncertainty");
+  return is_table ? set(":SENS:REF:TABL " + table, "--reference-table") : Problem{};
 }
 
 // A row, with the next one where that is its uncertainty.
@@ -240,31 +262,45 @@ Problem InstrumentClient::set_row(const app::SettingRow& row, const app::Setting
   return set(command, option);
 }
 
-Problem InstrumentClient::set_up(const app::SweepSettings& sweep) {
-  const app::SweepSettings defaults = app::default_sweep_settings();
-  if (Problem problem = set("*RST;*CLS", "--instrument")) {
+// A limit is set before the level that it must not be below; a level that becomes smaller makes way
+// for a limit below the one of before.
+Problem InstrumentClient::set_level_first(const ReportOptions& options) {
+  std::string level;
+  if (Problem problem = ask(":SOUR:LEV?", level)) {
     return problem;
   }
-  if (sweep.frequency_count != defaults.frequency_count ||
-      sweep.frequency_hz != defaults.frequency_hz) {
-    if (Problem problem = set(":SENS:SWE:FREQ " + frequencies_of(sweep), "--frequencies")) {
-      return problem;
-    }
-  }
-  if (Problem problem = set_reference(sweep.reference, defaults.reference)) {
+  return options.sweep.level_mps2 < std::strtod(level.c_str(), nullptr)
+             ? set(":SOUR:LEV " + number_text(options.sweep.level_mps2), "--level")
+             : Problem{};
+}
+
+Problem InstrumentClient::set_up(const ReportOptions& options) {
+  if (Problem problem = set("*CLS", "--instrument")) {
     return problem;
   }
-  // From the last to the first: a limit is set before the level that it must not be below.
+  if (Problem problem = set_level_first(options)) {
+    return problem;
+  }
+  if (Problem problem = set(":SENS:SWE:FREQ " + frequencies_of(options.sweep), "--frequencies")) {
+    return problem;
+  }
+  if (Problem problem = set_reference(options)) {
+    return problem;
+  }
+  // From the last to the first: the level after its limit.
   for (std::size_t i = std::size(app::kSweepSettingRows); i-- > 0;) {
     const app::SettingRow& row = app::kSweepSettingRows[i];
     if (row.option.name == nullptr || is_list(row.field)) {
       continue;
     }
-    const app::SettingRow* const next =
-        row.command.next_unit != nullptr ? &app::kSweepSettingRows[i + 1] : nullptr;
-    const bool is_set = !is_same(row.field, &sweep, &defaults) ||
-                        (next != nullptr && !is_same(next->field, &sweep, &defaults));
-    if (Problem problem = is_set ? set_row(row, next, sweep) : Problem{}) {
+    const std::string* const given = options.given_value(row.option.name);
+    if (given == nullptr && !is_of_the_sweep(row)) {
+      continue;
+    }
+    const bool has_uncertainty = given != nullptr && given->find(',') != std::string::npos &&
+                                 row.command.next_unit != nullptr;
+    const app::SettingRow* const next = has_uncertainty ? &app::kSweepSettingRows[i + 1] : nullptr;
+    if (Problem problem = set_row(row, next, options.sweep)) {
       return problem;
     }
   }

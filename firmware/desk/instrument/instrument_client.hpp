@@ -8,7 +8,6 @@
 #include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/settings/setting_row.hpp"
-#include "emax/app/settings/sweep_settings.hpp"
 #include "emax/hal/analog_stream.hpp"
 
 #include "desk/cli/console_progress.hpp"
@@ -40,10 +39,12 @@ class InstrumentClient final {
   /// Connects, and sees that an emax answers which has nothing else to do.
   Problem open(const std::string& port);
 
-  /// Puts it into its defaults and sets what differs from the defaults of a report.
+  /// Sets what a sweep is made of (frequencies, level, settling time, cycles, repeats), and of what
+  /// describes the bench (limits, full scales, gains, reference, corrections, their uncertainties)
+  /// what was given: the rest stays as somebody has told the instrument.
   ///
   /// @returns Bad input with its own words if it refuses a setting.
-  Problem set_up(const app::SweepSettings& sweep);
+  Problem set_up(const ReportOptions& options);
 
   /// Has it measure, to the end or to a fault, which is in `status` of the results.
   Problem measure(ConsoleProgress& progress);
@@ -59,8 +60,8 @@ class InstrumentClient final {
 
   Problem greet();
   Problem set(const std::string& command, const std::string& option);
-  Problem set_reference(const app::ReferenceCalibration& reference,
-                        const app::ReferenceCalibration& defaults);
+  Problem set_level_first(const ReportOptions& options);
+  Problem set_reference(const ReportOptions& options);
   Problem set_row(const app::SettingRow& row, const app::SettingRow* uncertainty,
                   const app::SweepSettings& sweep);
   Problem ask(const std::string& query, std::string& line);

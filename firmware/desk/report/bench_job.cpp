@@ -91,7 +91,7 @@ Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleP
   InstrumentClient client;
   Problem problem = client.open(options.instrument);
   if (!problem) {
-    problem = client.set_up(options.sweep);
+    problem = client.set_up(options);
   }
   if (!problem) {
     problem = client.measure(progress);
