@@ -236,6 +236,9 @@ TEST(SweepFaults, PairsThatOnceHadOtherNames) {
   // The second fault falls into the second look at the first, and leaves half of a sine.
   (void)run_near_the_limit(567131, {FaultKind::kSwappedChannels, 55701},
                            {FaultKind::kInvertedPolarity, 98529});
+  // The offset climbs from the second look at a device without a signal on.
+  (void)run_near_the_limit(246651, {FaultKind::kUnpluggedDevice, 23251},
+                           {FaultKind::kDcDrift, 27816});
 }
 
 TEST(SweepFaults, ChannelThatGetsStuckInASecondLookIsNoDrift) {

@@ -99,6 +99,8 @@ struct InstrumentCommands {
   static void fetch_json(Instrument& i, Call& call) noexcept;
   static void read(Instrument& i, Call& call) noexcept;
   static double common_percent(const Instrument& i) noexcept;
+  static double swept_percent(const Instrument& i) noexcept;
+  static double percent_for(const Instrument& i, const FrequencyResponse& points) noexcept;
   static void common_part(Instrument& i, Call& call) noexcept;
   /// Of points that are there already, the uncertainties stay what they are in all.
   static void take_common(Instrument& i, Call& call, double percent) noexcept;

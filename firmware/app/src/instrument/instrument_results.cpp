@@ -136,9 +136,19 @@ std::size_t InstrumentCommands::points_to_fetch(Instrument& i, Call& call) noexc
 
 double InstrumentCommands::common_percent(const Instrument& i) noexcept {
   const Sequencer& work = i.sequencer();
-  return work.points_origin() == Origin::kSweep
-             ? kCoverageFactor * kPercent * work.sweep().common.total
-             : i.common_percent();
+  return work.points_origin() == Origin::kSweep ? swept_percent(i) : percent_for(i, work.points());
+}
+
+double InstrumentCommands::swept_percent(const Instrument& i) noexcept {
+  return kCoverageFactor * kPercent * i.sequencer().sweep().common.total;
+}
+
+/// The common part of a table: what is set, or else, of points that the last sweep has measured,
+/// what that has found.
+double InstrumentCommands::percent_for(const Instrument& i,
+                                       const FrequencyResponse& points) noexcept {
+  const double set = i.common_percent();
+  return set > 0.0 || !i.sequencer().has_measured(points) ? set : swept_percent(i);
 }
 
 void InstrumentCommands::common_part(Instrument& i, Call& call) noexcept {
@@ -221,7 +231,7 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
       return;
     }
   }
-  if (remove_common(grown, i.common_percent()).status != Status::kOk) {
+  if (remove_common(grown, percent_for(i, grown)).status != Status::kOk) {
     call.fail(ErrorCode::kDataOutOfRange, "U(A) must be above CALC:REF:UNC");
     return;
   }

@@ -12,6 +12,17 @@ double SweepResults::progress() const noexcept {
   return (static_cast<double>(point_count) + checks) / all;
 }
 
+bool SweepResults::has_measured(Span<const ResponsePoint> any) const noexcept {
+  for (const ResponsePoint& one : any) {
+    for (const SweepPoint& own : points()) {
+      if (one.amplitude == own.point.amplitude && one.frequency_hz == own.point.frequency_hz) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 Status SweepResults::copy_to(FrequencyResponse& response) const noexcept {
   response.clear();
   if (stage != SweepStage::kDone && stage != SweepStage::kFailed) {

@@ -19,6 +19,9 @@ void Sequencer::take(const Identification& identification) noexcept {
 
 void Sequencer::take(const FrequencyResponse& points) noexcept {
   points_ = points;
+  if (has_measured(points)) {
+    (void)points_.set_shared(sweep_.shared);  // It was accepted by the sweep's own points.
+  }
   has_identification_ = false;
   points_origin_ = Origin::kTable;
   origin_ = Origin::kTable;

@@ -85,6 +85,9 @@ struct SweepResults {
   Span<const SweepPoint> points() const noexcept {
     return Span<const SweepPoint>(table).first(point_count);
   }
+  /// @returns Whether one of these points was measured by this sweep: the same frequency and
+  /// amplitude, to the last bit.
+  bool has_measured(Span<const ResponsePoint> any) const noexcept;
   /// Puts the points with their common part into a table for the fit, in place of what it held.
   ///
   /// @returns kOk, or kNotRunning if no sweep is done: the table is then empty.

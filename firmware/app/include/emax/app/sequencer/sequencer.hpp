@@ -89,7 +89,8 @@ class Sequencer {
   void give_damping(double damping) noexcept;
   /// The device of a fit of before power off.
   void take(const Identification& identification) noexcept;
-  /// The device that these points give.
+  /// The device that these points give. Those of the last sweep keep what they share
+  /// (`has_measured()`).
   void take(const FrequencyResponse& points) noexcept;
   /// The device that another instrument has measured: a sweep that is `done()`.
   void take(const SweepResults& sweep) noexcept;
@@ -159,6 +160,10 @@ class Sequencer {
   /// sweep failed is in `points()`, too.
   Origin points_origin() const noexcept { return points_origin_; }
   const SweepResults& sweep() const noexcept { return sweep_; }
+  /// @returns Whether some of these points are of the last sweep, which is `done()`.
+  bool has_measured(const FrequencyResponse& points) const noexcept {
+    return sweep_.done() && sweep_.has_measured(points.points());
+  }
   const EvaluationResults& evaluation() const noexcept { return evaluation_; }
   const FrequencyResponse& points() const noexcept { return points_; }
   /// @returns The identification of before power off; null if the device is another one by now.
