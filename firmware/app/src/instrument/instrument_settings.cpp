@@ -44,6 +44,14 @@ class SettingCall {
                                      : SettingLimits{field.min, field.max}),
         current_(current) {}
 
+  /// What MINimum and MAXimum are. A number beyond is a conflict of settings, which has words.
+  void narrow(const SettingLimits& limits) noexcept {
+    if (call_.has_word()) {
+      limits_.min = limits.min > limits_.min ? limits.min : limits_.min;
+      limits_.max = limits.max < limits_.max ? limits.max : limits_.max;
+    }
+  }
+
   /// @returns True if there is a new value. A query is answered.
   bool take(double by_default, SettingValue& value) noexcept {
     value.number = number_in(field_, current_);
@@ -258,8 +266,9 @@ void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t in
   // MINimum and others are asked of the value alone.
   const bool answers_both = has_two && call.is_query() && !call.has_more();
   SettingValue value;
-  if (!SettingCall(call, command, *field, kSweepNarrowed.data(), &i.sweep_settings())
-           .take(default_number(i, *field), value)) {
+  SettingCall setting(call, command, *field, kSweepNarrowed.data(), &i.sweep_settings());
+  setting.narrow(i.limits_beside(command.field));
+  if (!setting.take(default_number(i, *field), value)) {
     if (answers_both) {
       call.answer().number(uncertainty);
     }

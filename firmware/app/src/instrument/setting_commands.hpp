@@ -26,12 +26,6 @@ struct SettingCommand {
   std::uint8_t narrowed = 0;
 };
 
-/// Least and greatest value.
-struct SettingLimits {
-  double min = 0.0;
-  double max = 0.0;
-};
-
 constexpr bool is_narrowed(const SettingRow& row) noexcept {
   return row.command.header != nullptr &&
          (row.command.min != row.field.min || row.command.max != row.field.max);

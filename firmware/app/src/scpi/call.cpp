@@ -159,6 +159,15 @@ bool Call::take(Span<const char>& text) noexcept {
   return true;
 }
 
+bool Call::has_word() const noexcept {
+  for (const char c : rest_) {
+    if (!is_blank(c)) {
+      return is_letter(c);
+    }
+  }
+  return false;
+}
+
 bool Call::read_word_number(const NumberRule& rule, Span<const char> text, double& value) noexcept {
   const ErrorCode error = check_word(text);
   if (error != ErrorCode::kNoError) {

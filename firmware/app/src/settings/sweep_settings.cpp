@@ -69,11 +69,10 @@ SettingsError check_reference_table(const ReferenceCalibration& r) noexcept {
   return {};
 }
 
-bool suits_ramp(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
-  const double slowest = s.drive_limit_v / static_cast<double>(hal::kMaxRampFrames);
-  const double slew_v = s.slew_v_per_s / format.sample_rate_hz;
-  // 1e-6 more than a 256th per frame, so that rounding to words cannot fall below.
-  return slew_v >= slowest * (1.0 + 1e-6) && slew_v <= ranges::kLargest;
+// 1e-6 more than a 256th per frame, so that rounding to words cannot fall below.
+double slowest_v_per_s(const SweepSettings& s, const hal::StreamFormat& format) noexcept {
+  constexpr double kShare = (1.0 + 1e-6) / static_cast<double>(hal::kMaxRampFrames);
+  return kShare * s.drive_limit_v * format.sample_rate_hz;
 }
 
 constexpr std::size_t row(const char* name) noexcept { return row_of(kSweepSettingRows, name); }
@@ -83,13 +82,13 @@ bool is_suitable(std::size_t index, const SweepSettings& s,
                  const hal::StreamFormat& format) noexcept {
   switch (index) {
     case row("acceleration limit"):
-      return s.acceleration_limit_mps2 >= s.level_mps2;
     case row("drive limit"):
-      return s.drive_limit_v <= full_scales(s, format).drive_v;
     case row("slew"):
-      return suits_ramp(s, format);
-    case row("check frequency"):
-      return s.check_hz * ranges::kMaxRepeat_s >= 1.0 && s.check_hz < highest_hz(format);
+    case row("check frequency"): {
+      const double value = number_in(fields_of(s)[index], &s);
+      const SettingLimits limits = limits_beside(index, s, format);
+      return value >= limits.min && value <= limits.max;
+    }
     case row("expected sensitivity"):
       return is_zero_or_positive(s.expected_sensitivity);
     case row("drive full scale"):
@@ -169,6 +168,31 @@ double sensitivity_at(const ReferenceCalibration& calibration, double frequency_
     }
   }
   return s[calibration.count - 1];
+}
+
+SettingLimits limits_beside(std::size_t index, const SweepSettings& settings,
+                            const hal::StreamFormat& format) noexcept {
+  SettingLimits limits = {0.0, ranges::kLargest};
+  switch (index) {
+    case row("level"):
+      limits.max = settings.acceleration_limit_mps2;
+      break;
+    case row("acceleration limit"):
+      limits.min = settings.level_mps2;
+      break;
+    case row("drive limit"):
+      limits.max = full_scales(settings, format).drive_v;
+      break;
+    case row("slew"):
+      limits = {slowest_v_per_s(settings, format), ranges::kLargest * format.sample_rate_hz};
+      break;
+    case row("check frequency"):
+      limits = {1.0 / ranges::kMaxRepeat_s, kBelowOne * highest_hz(format)};
+      break;
+    default:
+      break;
+  }
+  return limits;
 }
 
 SettingsError check(const SweepSettings& settings, const hal::StreamFormat& format) noexcept {

@@ -75,6 +75,9 @@ class Call {
   /// @returns The number of parameters not taken.
   std::size_t count() const noexcept { return count_; }
 
+  /// @returns Whether the next parameter begins with a letter, as MINimum does.
+  bool has_word() const noexcept;
+
   /// A number with its unit, MINimum, MAXimum, DEFault, INFinity, NINFinity or NAN (9.9E37 and
   /// 9.91E37 are infinity and NaN), or #H, #Q, #B. What is outside the rule is -222.
   ///

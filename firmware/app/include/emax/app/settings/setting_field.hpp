@@ -56,6 +56,12 @@ struct SettingField {
   constexpr SettingField() noexcept : concern(Concern::kSweep), number_mode(0) {}
 };
 
+/// Least and greatest value.
+struct SettingLimits {
+  double min = 0.0;
+  double max = 0.0;
+};
+
 /// @returns All settings of the structure in the order of its members, which is also the order of
 /// checks and of saved bytes.
 Span<const SettingField> fields_of(const Settings& settings) noexcept;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "emax/app/settings/setting_field.hpp"
 #include "emax/app/settings/settings_error.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/hal/analog_stream.hpp"
@@ -95,6 +96,11 @@ inline constexpr double kPlausibleFactor = 3.0;
 ///
 /// @returns The first that is wrong, in the order of `SweepSettings`; nulls if there is none.
 SettingsError check(const SweepSettings& settings, const hal::StreamFormat& format) noexcept;
+
+/// @param[in] index Of a field in `fields_of(settings)`.
+/// @returns What the other settings and the stream leave of its range, which may be less by itself.
+SettingLimits limits_beside(std::size_t index, const SweepSettings& settings,
+                            const hal::StreamFormat& format) noexcept;
 
 /// The settings' limits as the stream takes them. The settings must have passed `check()`.
 hal::DriveLimits drive_limits(const SweepSettings& settings,
