@@ -44,11 +44,11 @@ class SettingCall {
                                      : SettingLimits{field.min, field.max}),
         current_(current) {}
 
-  /// What MINimum and MAXimum are. A number beyond is a conflict of settings, which has words.
-  void narrow(const SettingLimits& limits) noexcept {
+  /// To what MINimum and MAXimum are, of a setting of the sweep. A number beyond is a conflict of
+  /// settings, which has words.
+  void narrow(const Instrument& i) noexcept {
     if (call_.has_word()) {
-      limits_.min = limits.min > limits_.min ? limits.min : limits_.min;
-      limits_.max = limits.max < limits_.max ? limits.max : limits_.max;
+      i.narrow(command_.field, limits_);
     }
   }
 
@@ -267,7 +267,7 @@ void InstrumentCommands::sweep_setting(Instrument& i, Call& call, std::size_t in
   const bool answers_both = has_two && call.is_query() && !call.has_more();
   SettingValue value;
   SettingCall setting(call, command, *field, kSweepNarrowed.data(), &i.sweep_settings());
-  setting.narrow(i.limits_beside(command.field));
+  setting.narrow(i);
   if (!setting.take(default_number(i, *field), value)) {
     if (answers_both) {
       call.answer().number(uncertainty);

@@ -86,7 +86,8 @@ bool is_suitable(std::size_t index, const SweepSettings& s,
     case row("slew"):
     case row("check frequency"): {
       const double value = number_in(fields_of(s)[index], &s);
-      const SettingLimits limits = limits_beside(index, s, format);
+      SettingLimits limits = {0.0, ranges::kLargest};
+      narrow(index, s, format, limits);
       return value >= limits.min && value <= limits.max;
     }
     case row("expected sensitivity"):
@@ -170,29 +171,27 @@ double sensitivity_at(const ReferenceCalibration& calibration, double frequency_
   return s[calibration.count - 1];
 }
 
-SettingLimits limits_beside(std::size_t index, const SweepSettings& settings,
-                            const hal::StreamFormat& format) noexcept {
-  SettingLimits limits = {0.0, ranges::kLargest};
+void narrow(std::size_t index, const SweepSettings& settings, const hal::StreamFormat& format,
+            SettingLimits& limits) noexcept {
   switch (index) {
     case row("level"):
       limits.max = settings.acceleration_limit_mps2;
-      break;
+      return;
     case row("acceleration limit"):
       limits.min = settings.level_mps2;
-      break;
+      return;
     case row("drive limit"):
       limits.max = full_scales(settings, format).drive_v;
-      break;
+      return;
     case row("slew"):
-      limits = {slowest_v_per_s(settings, format), ranges::kLargest * format.sample_rate_hz};
-      break;
+      limits.min = slowest_v_per_s(settings, format);
+      return;
     case row("check frequency"):
       limits = {1.0 / ranges::kMaxRepeat_s, kBelowOne * highest_hz(format)};
-      break;
+      return;
     default:
-      break;
+      return;
   }
-  return limits;
 }
 
 SettingsError check(const SweepSettings& settings, const hal::StreamFormat& format) noexcept {

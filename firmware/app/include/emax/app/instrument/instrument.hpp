@@ -135,9 +135,9 @@ class Instrument {
   const SweepSettings& sweep_settings() const noexcept { return sweep_settings_; }
   /// Those of *RST.
   SweepSettings default_sweep() const noexcept;
-  /// What the others leave of a setting of the sweep, as `app::limits_beside()`.
-  SettingLimits limits_beside(std::size_t index) const noexcept {
-    return app::limits_beside(index, sweep_settings_, ports_.analog.format());
+  /// As `app::narrow()`, of a setting of the sweep.
+  void narrow(std::size_t index, SettingLimits& limits) const noexcept {
+    app::narrow(index, sweep_settings_, ports_.analog.format(), limits);
   }
   /// Takes settings that `check()` accepts, unless work runs that needs the old ones.
   ErrorWords take(const Settings& settings) noexcept;

@@ -97,10 +97,12 @@ inline constexpr double kPlausibleFactor = 3.0;
 /// @returns The first that is wrong, in the order of `SweepSettings`; nulls if there is none.
 SettingsError check(const SweepSettings& settings, const hal::StreamFormat& format) noexcept;
 
-/// @param[in] index Of a field in `fields_of(settings)`.
-/// @returns What the other settings and the stream leave of its range, which may be less by itself.
-SettingLimits limits_beside(std::size_t index, const SweepSettings& settings,
-                            const hal::StreamFormat& format) noexcept;
+/// Sets those limits of a setting that other settings or the stream make.
+///
+/// @param[in]     index  Of its field in `fields_of(settings)`.
+/// @param[in,out] limits Of its range by itself.
+void narrow(std::size_t index, const SweepSettings& settings, const hal::StreamFormat& format,
+            SettingLimits& limits) noexcept;
 
 /// The settings' limits as the stream takes them. The settings must have passed `check()`.
 hal::DriveLimits drive_limits(const SweepSettings& settings,
