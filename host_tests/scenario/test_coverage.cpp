@@ -357,6 +357,34 @@ TEST(Coverage, OfSensorsGainsAndCorrections) {
               4 * kOfEach);
 }
 
+// Of crosstalk of 0.5 % the squares, too, are beyond the noise, and the fit is right all the same.
+TEST(Coverage, ChiSquareHoldsTheSquaresOfCrosstalk) {
+  constexpr int kSeeds = 20;
+  int doubtful = 0;
+  Inside inside;
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kSeeds; ++seed) {
+    emax::sim::BenchSettings bench;
+    bench.seed = seed;
+    bench.noise_v = 1e-4;
+    bench.crosstalk_expanded_percent = 0.5;
+    emax::app::SweepSettings stated = emax::app::default_sweep_settings();
+    stated.crosstalk_expanded_percent = 0.5;
+    const emax::WlspFit& fit = fitted(bench, stated);
+    // One fit in a hundred exceeds it by chance.
+    doubtful += fit.chi2 / fit.dof > 1.40 ? 1 : 0;
+    count(fit, bench.device, inside);
+  }
+  std::printf("crosstalk 0.5 %%: %d of %d fits in doubt, inside: S %d, f0 %d, beta %d\n", doubtful,
+              kSeeds, inside.of[0], inside.of[1], inside.of[2]);
+  // One of the two draws is beyond twice its standard uncertainty in 9 of 100: more than 5 of 20
+  // once in 500.
+  EXPECT_LE(doubtful, 5);
+  // Of a binomial distribution with 20 trials of 0.95, 99.7 % are not below.
+  for (const int of_one : inside.of) {
+    EXPECT_GE(of_one, 16);
+  }
+}
+
 // Crosstalk and a bent gain move the points of a quiet bench by 100 times their own uncertainty, as
 // its settings say: no reason to doubt the fit.
 TEST(Coverage, ChiSquareHoldsWhatTheBudgetStates) {

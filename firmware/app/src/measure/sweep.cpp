@@ -14,6 +14,7 @@ namespace {
 constexpr double kRest_s = 2.0;
 constexpr double kMuchScatter = 1e-4;  // Relative, of the mean of a point's repeats.
 constexpr double kHiddenShare = 0.5;
+constexpr double kExpanded2 = 4.0;  // The square of k = 2.
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
@@ -424,10 +425,15 @@ void Sweep::share_effects(double check_change) noexcept {
     const Complex at = shared_at(results.shared, point.frequency_hz, (passed + 0.5 * own) / time,
                                  point.frequency_hz / highest_hz);
     passed += own;
+    // The fit takes crosstalk for linear, and leaves squares of it in the points.
+    const double leak = results.shared.leak / point.amplitude;
+    const double back = results.shared.leak_back * point.amplitude;
+    const double bent = kExpanded2 * (leak * leak + back * back);
     const double u = point.u_amplitude / point.amplitude;
-    results.table[i].budget.shared = at.re;
-    point.u_amplitude = sqrt(u * u + at.re * at.re) * point.amplitude;
-    point.u_phase_rad = sqrt(u * u + at.im * at.im);
+    const double own2 = u * u + bent * bent;
+    results.table[i].budget.shared = sqrt(at.re * at.re + bent * bent);
+    point.u_amplitude = sqrt(own2 + at.re * at.re) * point.amplitude;
+    point.u_phase_rad = sqrt(own2 + at.im * at.im);
   }
   results.shared.drift = drift;
 }
