@@ -24,7 +24,11 @@ bool contradicts(Warning warning, const SweepResults& sweep) noexcept {
     return !points.empty() && sweep.shared.drift > kMuchChange &&
            sweep.shared.drift > kBeyondNoise * points[0].budget.noise;
   }
-  return is_off_sheet(norm(sweep.check_before), sweep.settings.expected_sensitivity);
+  // Near its resonance a device is off by itself: then its lowest frequency is not.
+  const double sheet = sweep.settings.expected_sensitivity;
+  const double lowest = sweep.table[0].point.amplitude;
+  return is_off_sheet(norm(sweep.check_before), sheet) &&
+         (sweep.point_count == 0 || is_off_sheet(lowest * lowest, sheet));
 }
 
 const char* words_of_contradiction(Warning warning) noexcept {
@@ -35,7 +39,8 @@ const char* words_of_contradiction(Warning warning) noexcept {
     return "the check's ratio has changed: a gain was switched, or a cable or mounting is loose, "
            "or hum is near";
   }
-  return "the device is 20 % or more off its data sheet: check gains and reference set";
+  return "the device is 20 % or more off its data sheet: check gains and reference set; "
+         "is f0 near the check frequency?";
 }
 
 }  // namespace emax::app
