@@ -128,6 +128,13 @@ class InstrumentSweeps(ProgramTest):
     def test_by_serial_line(self) -> None:
         self.expect_the_same(SerialInstrument, ["--bench-seed", "3"], [])
 
+    def test_a_fault_after_the_end_is_told(self) -> None:
+        with TcpInstrument("--bench-fault", "dc-drift@1000") as remote:
+            done = self.run_program("report", "--instrument", remote.port, *QUICK, "--json")
+        self.assertEqual(done.returncode, 0)
+        self.assert_one_line(done.stderr, "dc-drift did not strike: the sweep has ended after ", "give an earlier time")
+        self.assertEqual(done.stdout.decode(), self.succeed("report", *QUICK, "--json"))
+
     def test_files(self) -> None:
         with TcpInstrument() as remote:
             self.succeed("report", "--instrument", remote.port, *QUICK, "--out", "remote")

@@ -672,6 +672,28 @@ class Bench(ProgramTest):
         self.assertEqual((result.returncode, result.stdout.decode("ascii")), (0, expected))
         self.assert_one_line(result.stderr, "dc-drift did not strike", "give an earlier time")
 
+    def test_faults_name_their_likely_cause(self):
+        def line_of(*options):
+            result = self.run_program("report", *QUICK, *options)
+            self.assertEqual(result.returncode, 3)
+            return result.stderr
+
+        # Five times 400 Hz is the resonance.
+        self.assert_one_line(line_of("--bench-truth", "1,2000,0.001", "--frequencies", "100,150,200,300,400,500,700,1000"),
+                             "distorted response at 400 Hz: ", "; harmonic 5 of the drive, 2000 Hz, falls on the resonance",
+                             "leave this frequency out (4 of 8 points kept, drive at zero)")
+        # 300 V at a channel that takes 10 V.
+        self.assert_one_line(line_of("--bench-truth", "300,4000,0.3"), "saturated channel at ",
+                             "the device makes 300 V of the level of 1 m/s^2, and its channel takes 10 V: put a divider "
+                             "before it, told by --device-gain 0.02, or lower --level")
+        self.succeed("report", *QUICK, "--bench-truth", "300,4000,0.3", "--device-gain", "0.02")
+        low = ["--frequencies", "10,20,30,40,60,80,100,120,140,180,200"]
+        for truth, name in [("1,170,0.05", "swapped channels at 160 Hz: "), ("1,100,0.3", "inverted polarity at 160 Hz: ")]:
+            self.assert_one_line(line_of("--bench-truth", truth, *low), name, "f0 is near the check frequency")
+        self.succeed("report", *QUICK, "--bench-truth", "1,170,0.05", "--check-frequency", "20", *low)
+        self.assert_one_line(line_of("--bench-hum", "0.05,50", "--check-frequency", "50"), "mains hum at 50 Hz: ",
+                             "the check frequency is given by --check-frequency")
+
     def test_sweep_that_a_fault_ends_late_is_fitted(self):
         result = self.run_program("report", *QUICK, "--bench-fault", "unplugged-device@5", "--out", "out")
         self.assertEqual(result.returncode, 3)

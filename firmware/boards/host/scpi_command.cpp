@@ -146,12 +146,14 @@ class ScpiJob final {
     port_.wait(is_resting ? longest : Microseconds{0}, wishes);
   }
 
-  // Once, at the end of the first sweep: answers have no place for it.
+  // Once, at the end of the first sweep, and to who asks FETCh:JSON? after any: other answers have
+  // no place for it.
   void tell_unstruck(bool is_sweeping) {
-    if (was_sweeping_ && !is_sweeping && !is_told_) {
-      const std::string words = desk::words_of_unstruck(bench_);
-      if (!words.empty()) {
-        std::fprintf(stderr, "emax: %s\n", words.c_str());
+    if (was_sweeping_ && !is_sweeping) {
+      unstruck_ = desk::words_of_unstruck(bench_);
+      simulated_.unstruck = unstruck_.empty() ? nullptr : unstruck_.c_str();
+      if (!unstruck_.empty() && !is_told_) {
+        std::fprintf(stderr, "emax: %s\n", unstruck_.c_str());
       }
       is_told_ = true;
     }
@@ -173,6 +175,7 @@ class ScpiJob final {
   Pacer pacer_;
   app::SweepSettings sweep_;
   app::SimulatedBench simulated_;
+  std::string unstruck_;
   std::unique_ptr<double[]> trials_;
   std::unique_ptr<TrialPiece[]> pieces_;
   VolatileBytes volatile_bytes_;

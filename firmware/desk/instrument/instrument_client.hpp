@@ -23,6 +23,7 @@ struct InstrumentSweep {
   hal::StreamFormat format;  ///< Its sample rate; no more is told.
   bool is_simulated = false;
   app::SimulatedBench simulated;  ///< If so.
+  std::string unstruck;           ///< Scripted faults that have not struck, in words.
 };
 
 /// A point as it is told while the sweep runs: its uncertainties are known at the end.

@@ -4,6 +4,7 @@
 
 #include "emax/app/settings/setting_field.hpp"
 
+#include "desk/cli/console.hpp"
 #include "desk/files/json_reader.hpp"
 #include "desk/instrument/instrument_client.hpp"
 
@@ -166,6 +167,7 @@ std::string read_instrument_sweep(const std::string& json, InstrumentSweep& swee
   sweep.is_simulated = truth.is_object();
   sweep.simulated = {static_cast<std::uint64_t>(value["bench"]["seed"].number()),
                      {truth["S"].number(), truth["f0"].number(), truth["beta"].number()}};
+  sweep.unstruck = printable(value["bench"]["unstruck"].text());
   return "";
 }
 

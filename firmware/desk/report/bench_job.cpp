@@ -1,11 +1,15 @@
 // Runs the work of `emax report`, and says how its sweep has ended.
 #include "desk/report/bench_job.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <memory>
 #include <string>
 
 #include "emax/base/status.hpp"
+#include "emax/identify/frequency_response.hpp"
+#include "emax/identify/wlsp.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/stop_request.hpp"
@@ -44,8 +48,55 @@ std::string stage_of(const app::SweepResults& sweep) {
   return "sweep,";
 }
 
+std::string general(double value, int digits) {
+  StringSink sink;
+  app::TextWriter writer(sink);
+  writer.general(value, digits);
+  return sink.text();
+}
+
+// Of a device that gives more volts than its channel takes.
+//
+// @param[in] full_scale_v Of the device's channel; 0 where it is not known, or not the reason.
+std::string words_on_divider(const app::SweepSettings& settings, double full_scale_v) {
+  const double volts = settings.level_mps2 * settings.expected_sensitivity * settings.device_gain;
+  if (!(full_scale_v > 0.0) || !(volts > full_scale_v)) {
+    return "; --device-gain and --reference-gain below 1 are attenuators";
+  }
+  return "; by its data sheet the device makes " + general(volts, 3) + " V of the level of " +
+         general(settings.level_mps2, 3) + " m/s^2, and its channel takes " +
+         general(full_scale_v, 3) + " V: put a divider before it, told by --device-gain " +
+         general(0.5 * settings.device_gain * full_scale_v / volts, 1) + ", or lower --level";
+}
+
+// A harmonic of the drive that falls on the resonance, by the points before.
+std::string words_on_harmonic(const app::SweepResults& sweep) {
+  constexpr double kMostHarmonic = 9.0;
+  constexpr double kNear = 0.05;  // Of the resonance.
+  FrequencyResponse points;
+  const auto fit = std::make_unique<Wlsp>();
+  if (sweep.copy_to(points) != Status::kOk || fit->fit(points) != Status::kOk) {
+    return "";
+  }
+  const double f0_hz = fit->result().model.natural_frequency_hz;
+  const double harmonic = std::round(f0_hz / sweep.failed_frequency_hz);
+  const double at_hz = harmonic * sweep.failed_frequency_hz;
+  if (harmonic < 2.0 || harmonic > kMostHarmonic || std::abs(at_hz - f0_hz) > kNear * f0_hz) {
+    return "";
+  }
+  return "; harmonic " + general(harmonic, 1) + " of the drive, " + in_hz(at_hz) +
+         ", falls on the resonance, which is near " + general(f0_hz, 2) +
+         " Hz by the points before: leave this frequency out";
+}
+
+bool is_at_check(const app::SweepResults& sweep) {
+  return sweep.points().empty() && sweep.failed_frequency_hz == sweep.settings.check_hz;
+}
+
 // With what an option can do about it.
-std::string words_on(const app::SweepResults& sweep) {
+//
+// @param[in] full_scale_v As above.
+std::string words_on(const app::SweepResults& sweep, double full_scale_v) {
   const double least_mps2 = sweep.least_level_mps2;
   char level[64] = "";
   if (least_mps2 > 0.0) {
@@ -59,7 +110,20 @@ std::string words_on(const app::SweepResults& sweep) {
                                         ", and full scale leaves less; an attenuator "
                                         "behind the drive is told by --drive-full-scale"
                                   : "";
-    return words + cause + "; --device-gain and --reference-gain below 1 are attenuators";
+    return words + cause + words_on_divider(sweep.settings, least_mps2 > 0.0 ? 0.0 : full_scale_v);
+  }
+  const bool are_cables =
+      sweep.status == Status::kSwappedChannels || sweep.status == Status::kInvertedPolarity;
+  if (are_cables && is_at_check(sweep)) {
+    return words +
+           "; or the device's f0 is near the check frequency: give a --check-frequency "
+           "far below it";
+  }
+  if (sweep.status == Status::kHum && is_at_check(sweep)) {
+    return words + "; the check frequency is given by --check-frequency";
+  }
+  if (sweep.status == Status::kDistorted) {
+    words += words_on_harmonic(sweep);
   }
   if (!(least_mps2 > 0.0)) {
     return words;
@@ -153,10 +217,10 @@ Problem BenchJob::work(ConsoleProgress& progress) {
 }
 
 Problem BenchJob::unstruck() const {
-  if (is_remote_ || !has_measured()) {
+  if (!has_measured()) {
     return {};
   }
-  const std::string words = words_of_unstruck(bench_);
+  const std::string words = is_remote_ ? remote_.unstruck : words_of_unstruck(bench_);
   return words.empty() ? Problem{} : Problem{ExitStatus::kDone, words};
 }
 
@@ -177,12 +241,14 @@ Problem BenchJob::describe_sweep() const {
   if (sweep.status == Status::kStopped && is_at_zero) {
     return {ExitStatus::kStopped, "stopped during the sweep, " + drive};
   }
+  const double full_scale_v = app::full_scales(sweep.settings, measurement().format).device_v;
   const std::string where = sweep.failed_frequency_hz > 0.0
                                 ? "at " + in_hz(sweep.failed_frequency_hz)
                                 : "before the first frequency";
   return fault(std::string(app::name_of_fault(sweep.status)) + " " + where + ": " +
-               words_on(sweep) + " (" + std::to_string(sweep.points().size()) + " of " +
-               std::to_string(sweep.settings.frequency_count) + " points kept, " + drive + ")");
+               words_on(sweep, full_scale_v) + " (" + std::to_string(sweep.points().size()) +
+               " of " + std::to_string(sweep.settings.frequency_count) + " points kept, " + drive +
+               ")");
 }
 
 }  // namespace emax::desk

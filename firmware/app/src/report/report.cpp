@@ -654,9 +654,13 @@ void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out)
         "  then too small by about the Birge ratio of ");
     out.general(fit.birge_ratio, 3).text(".\n");
     out.text(
-        "  Check: the points named below, resonances of mounting and cable, a delay between the\n"
-        "  channels (a phase that grows with frequency), an AC coupling (the lowest frequencies),\n"
-        "  and that the table's uncertainties are expanded ones (k = 2).\n");
+        "  Check: the points named below (multiples of 50 or 60 Hz: hum), resonances of mounting "
+        "and\n"
+        "  cable, crosstalk, a delay between the channels (a phase that grows with frequency), an "
+        "AC\n"
+        "  coupling (the lowest frequencies), and that the table's uncertainties are expanded "
+        "ones\n"
+        "  (k = 2).\n");
     if (cause != nullptr) {
       write_cause("", cause, out);
     }

@@ -98,6 +98,9 @@ void write_simulated(const SimulatedBench* simulated, JsonWriter& json) noexcept
     return;
   }
   json.integer("seed", simulated->seed);
+  if (simulated->unstruck != nullptr) {
+    json.words("unstruck", simulated->unstruck);
+  }
   json.open("truth");
   json.number("S", simulated->truth.sensitivity);
   json.number("f0", simulated->truth.natural_frequency_hz);

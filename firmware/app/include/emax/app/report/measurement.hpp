@@ -17,6 +17,9 @@ namespace emax::app {
 struct SimulatedBench {
   std::uint64_t seed = 0;
   Accelerometer truth;
+  /// The scripted faults that the last sweep's end came before, in words; null if there are none.
+  /// For FETCh:JSON?.
+  const char* unstruck = nullptr;
 };
 
 /// Refers to what it describes; made for one call.
