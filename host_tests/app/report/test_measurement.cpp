@@ -414,6 +414,21 @@ TEST(Measurement, WhatContradictsIsSaid) {
   EXPECT_TRUE(warns(FinishedRun(bench_with(FaultKind::kUnpluggedDevice, 500000)), kEnded));
 }
 
+// Where hum of 50 mV meets 1 V at 50 Hz it is named, there and nowhere else.
+TEST(Measurement, HumAtAFrequencyIsNamed) {
+  BenchSettings bench;
+  bench.hum_v = 0.05;
+  bench.hum_hz = 50.0;
+  SweepSettings settings = emax::app::default_sweep_settings();
+  settings.frequency_hz = {50.0, 200.0, 1000.0, 2500.0, 4000.0};
+  settings.frequency_count = 5;
+  const auto [report, json] = texts_of(FinishedRun(bench, settings));
+  constexpr const char* kHum = " Hz: leave it out, hum of the mains is in it, u ";
+  EXPECT_TRUE(says(report, std::string("  50") + kHum));
+  EXPECT_EQ(report.find(kHum), report.rfind(kHum));
+  EXPECT_EQ(JsonReader(json).at("bench.flagged[0]"), "50");
+}
+
 TEST(Measurement, LevelThatIsNotReachedIsSaid) {
   SweepSettings settings = emax::app::default_sweep_settings();
   settings.level_mps2 = 19.0;

@@ -430,10 +430,10 @@ void Sweep::share_effects(double check_change) noexcept {
     const double back = results.shared.leak_back * point.amplitude;
     const double bent = kExpanded2 * (leak * leak + back * back);
     const double u = point.u_amplitude / point.amplitude;
-    const double own2 = u * u + bent * bent;
-    results.table[i].budget.shared = sqrt(at.re * at.re + bent * bent);
-    point.u_amplitude = sqrt(own2 + at.re * at.re) * point.amplitude;
-    point.u_phase_rad = sqrt(own2 + at.im * at.im);
+    const double shared2 = at.re * at.re + bent * bent;
+    results.table[i].budget.shared = sqrt(shared2);
+    point.u_amplitude = sqrt(u * u + shared2) * point.amplitude;
+    point.u_phase_rad = sqrt(u * u + (at.im * at.im + bent * bent));
   }
   results.shared.drift = drift;
 }

@@ -8,7 +8,8 @@ constexpr double kMuchChange = 0.01;
 constexpr double kBeyondNoise = 10.0;  // Of the lowest frequency, whose record is the longest.
 constexpr double kNearSheet2 = 1.44;   // A factor of 1.2, squared.
 
-bool is_off_sheet(double found2, double sheet) noexcept {
+// Out of line, for its size.
+[[gnu::noinline]] bool is_off_sheet(double found2, double sheet) noexcept {
   const double sheet2 = sheet * sheet;
   return found2 * sheet > 0.0 && (found2 > kNearSheet2 * sheet2 || found2 * kNearSheet2 < sheet2);
 }
