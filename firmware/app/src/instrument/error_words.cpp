@@ -31,7 +31,8 @@ constexpr FaultWords kFaults[] = {
      scpi::kQuestionableCalibration},
     {Status::kInvertedPolarity, "inverted polarity: swap its leads; SWE:CHEC below f0?",
      scpi::kQuestionablePhase},
-    {Status::kDistorted, "distorted: lower SOUR:LEV, check mount", scpi::kQuestionableCalibration},
+    {Status::kDistorted, "distorted: lower SOUR:LEV, check mount; harmonic at f0?",
+     scpi::kQuestionableCalibration},
     {Status::kHum, "mains hum: change SWE:FREQ, CHEC, CYCL", scpi::kQuestionableCalibration},
     {Status::kDcDrift, "DC drift: warm up, check its cable", scpi::kQuestionableVoltage},
 };

@@ -160,9 +160,9 @@ class Sequencer {
   /// sweep failed is in `points()`, too.
   Origin points_origin() const noexcept { return points_origin_; }
   const SweepResults& sweep() const noexcept { return sweep_; }
-  /// @returns Whether some of these points are of the last sweep, which is `done()`.
+  /// @returns Whether some of these points are of the last sweep.
   bool has_measured(const FrequencyResponse& points) const noexcept {
-    return sweep_.done() && sweep_.has_measured(points.points());
+    return sweep_.has_measured(points.points());
   }
   const EvaluationResults& evaluation() const noexcept { return evaluation_; }
   const FrequencyResponse& points() const noexcept { return points_; }
