@@ -37,7 +37,7 @@ struct WordCondition {
   const char* option;
 };
 
-constexpr WordCondition kWords[] = {
+constexpr WordCondition kWordConditions[] = {
     {&Result::criterion, "criterion", "--criterion"},
     {&Result::method, "method", "--method"},
     {&Result::gain_mode, "gain", "--gain"},
@@ -85,7 +85,7 @@ Problem check_delay(const Result& result, const Result& first, FigureKind by) {
 }
 
 Problem check_conditions(const Result& result, const Result& first, FigureKind by) {
-  for (const WordCondition& word : kWords) {
+  for (const WordCondition& word : kWordConditions) {
     if (result.*word.member != first.*word.member) {
       return differ(result, first, word.name, result.*word.member, first.*word.member, word.option);
     }

@@ -33,7 +33,7 @@ constexpr double kRowMargin = 14.0;
 constexpr double kRowHeight = 46.0;  // At least.
 constexpr double kLetter = 8.4;
 constexpr double kNameWidth = 27.0;
-constexpr std::size_t kNameLines = 2 * kNameShown / 27;  // Broad letters take 1.5.
+constexpr std::size_t kPictureNameLines = 2 * kNameShown / 27;  // Broad letters take 1.5.
 
 struct Range {
   double least = HUGE_VAL;
@@ -87,7 +87,7 @@ Range axis_of(const Comparison& comparison, std::size_t rows, double factor) {
 std::vector<std::string> name_of_row(const Comparison& comparison, std::size_t index) {
   const Result& result = comparison.results[index];
   std::vector<std::string> lines =
-      name_lines(result, kNameWidth, kNameLines, Typeface::kProportional);
+      name_lines(result, kNameWidth, kPictureNameLines, Typeface::kProportional);
   for (std::string& line : lines) {
     const bool is_cut = line.size() >= 3 && line.compare(line.size() - 3, 3, "...") == 0;
     line = is_cut ? line.substr(0, line.size() - 3) + "…" : line;

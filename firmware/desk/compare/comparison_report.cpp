@@ -22,7 +22,7 @@ constexpr std::size_t kMostColumns = 130;
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kLeastName = 12;
 constexpr std::size_t kMostName = 36;
-constexpr std::size_t kNameLines = kNameShown / kLeastName;
+constexpr std::size_t kReportNameLines = kNameShown / kLeastName;
 constexpr double kWordsColumns = 86.0;
 constexpr std::size_t kAnyLines = 100;
 
@@ -72,7 +72,7 @@ void write_row(const ComparisonTable& table, const std::vector<std::string>& row
 void write_device(const ComparisonTable& table, const Result& result, std::vector<std::string> row,
                   const std::vector<std::size_t>& widths, TextWriter& out) {
   const std::vector<std::string> lines =
-      name_lines(result, static_cast<double>(widths[table.names]), kNameLines);
+      name_lines(result, static_cast<double>(widths[table.names]), kReportNameLines);
   const std::string below(kGap + widths[0] + kGap, ' ');
   row[table.names] = lines.front();
   write_row(table, row, widths, out);

@@ -18,7 +18,7 @@ constexpr int kDigitsAlone = 4;
 constexpr int kMostDigits = 12;
 constexpr const char* kNone = "-";
 
-constexpr FigureWords kWords[kFigureKinds] = {
+constexpr FigureWords kFigureWords[kFigureKinds] = {
     {"matched %", " % of S a", "matched"},
     {"in band %", " % of S a", "band"},
     {"E in V^2 s", " V^2 s", "energy"},
@@ -46,7 +46,7 @@ std::string in_digits(double value, int digits, FigureKind kind) {
 }  // namespace
 
 const FigureWords& figure_words(FigureKind kind) noexcept {
-  return kWords[static_cast<std::size_t>(kind)];
+  return kFigureWords[static_cast<std::size_t>(kind)];
 }
 
 bool is_rounding(double size, double figure) noexcept {

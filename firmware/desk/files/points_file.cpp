@@ -14,7 +14,7 @@ namespace emax::desk {
 
 namespace {
 
-constexpr std::size_t kMaxFileSize = std::size_t{1} << 20;
+constexpr std::size_t kMaxPointsFileSize = std::size_t{1} << 20;
 
 Problem describe(const std::string& name, const desk::ImportError& error) {
   if (!error) {
@@ -57,7 +57,7 @@ Problem read_points(const std::string& path, const desk::ImportOptions& options,
   const std::string name = name_of_input(path);
   std::string text;
   if (Problem problem = read_text_file(
-          path, kMaxFileSize,
+          path, kMaxPointsFileSize,
           "expected a table of at most " EMAX_TEXT_OF(EMAX_MAX_POINTS) " points", text)) {
     return problem;
   }

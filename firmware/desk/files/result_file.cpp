@@ -21,7 +21,7 @@ namespace emax::desk {
 
 namespace {
 
-constexpr std::size_t kMaxFileSize = std::size_t{4} << 20;
+constexpr std::size_t kMaxResultFileSize = std::size_t{4} << 20;
 constexpr const char* kAboutFit = "fit";
 constexpr const char* kAboutDamping = "damping";
 constexpr const char* kExpectation = "expected a results.json of emax report";
@@ -338,7 +338,7 @@ Problem check_marks(const JsonValue& root, const std::string& file) {
 
 Problem parse_result(const std::string& path, const std::string& file, JsonValue& root) {
   std::string text;
-  if (Problem problem = read_text_file(path, kMaxFileSize, kExpectation, text)) {
+  if (Problem problem = read_text_file(path, kMaxResultFileSize, kExpectation, text)) {
     return problem;
   }
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {

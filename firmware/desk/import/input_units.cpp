@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <iterator>
 
+#include "desk/import/letters.hpp"
+
 namespace emax::desk {
 
 namespace {
@@ -112,21 +114,17 @@ constexpr Replacement kReplacements[] = {
     {"\xC2\xA0", ""},
 };
 
-bool is_letter(char c) noexcept { return c >= 'a' && c <= 'z'; }
-
-char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 // "per" as a word by itself.
 bool is_per(std::string_view text, std::size_t at) noexcept {
-  const bool begins = at == 0 || !is_letter(text[at - 1]);
-  const bool ends = at + 3 >= text.size() || !is_letter(text[at + 3]);
+  const bool begins = at == 0 || !is_small_letter(text[at - 1]);
+  const bool ends = at + 3 >= text.size() || !is_small_letter(text[at + 3]);
   return begins && ends && text.substr(at, 3) == "per";
 }
 
 std::string canonical(std::string_view spelling) {
   std::string small;
   for (const char c : spelling) {
-    small += lower(c);
+    small += small_letter(c);
   }
   std::string result;
   for (std::size_t at = 0; at < small.size();) {

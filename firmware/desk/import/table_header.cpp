@@ -9,6 +9,8 @@
 #include "emax/base/span.hpp"
 #include "emax/base/status.hpp"
 
+#include "desk/import/letters.hpp"
+
 namespace emax::desk {
 
 namespace {
@@ -94,9 +96,9 @@ constexpr std::string_view kUncertaintyWords[] = {"u",
                                                   "incertidumbre",
                                                   "incertezza"};
 // Of an uncertainty with k = 1, as words of their own or behind the uncertainty.
-constexpr std::string_view kStandardWords[] = {"standard", "std", "standardunsicherheit",
+constexpr std::string_view kStandardNames[] = {"standard", "std", "standardunsicherheit",
                                                "standardmessunsicherheit"};
-constexpr std::string_view kStandardWordsBehind[] = {
+constexpr std::string_view kStandardNamesBehind[] = {
     "type", "tipo", "t\303\255pica", "tipica", "est\303\241ndar", "estandar"};
 constexpr std::string_view kRelativeWords[] = {"rel",      "relative", "relativer", "relativen",
                                                "relativa", "relativo", "relatif"};
@@ -149,15 +151,9 @@ bool is_one_of(std::string_view word, const std::string_view (&words)[kCount]) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
-char ascii_small(char c) noexcept {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
-
 bool is_part_of_word(char c) noexcept {
-  const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return is_letter || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80 || c == '%';
+  return is_small_letter(small_letter(c)) || is_digit(c) || static_cast<unsigned char>(c) >= 0x80 ||
+         c == '%';
 }
 
 struct Word {
@@ -166,14 +162,14 @@ struct Word {
 };
 
 // Of A to Z and of the letters with accents of Latin-1.
-char small_letter(std::string_view cell, std::size_t at) noexcept {
+char small_letter_at(std::string_view cell, std::size_t at) noexcept {
   constexpr unsigned kFirst = 0x80;
   constexpr unsigned kLast = 0x9E;
   constexpr unsigned kDistance = 0x20;
   const char c = cell[at];
   const unsigned byte = static_cast<unsigned char>(c);
   const bool is_accented = at > 0 && cell[at - 1] == '\xC3' && byte >= kFirst && byte <= kLast;
-  return is_accented ? static_cast<char>(byte + kDistance) : ascii_small(c);
+  return is_accented ? static_cast<char>(byte + kDistance) : small_letter(c);
 }
 
 std::vector<Word> words_of(const std::string& cell) {
@@ -185,7 +181,7 @@ std::vector<Word> words_of(const std::string& cell) {
     if (at == 0 || !is_part_of_word(cell[at - 1])) {
       words.push_back({"", at});
     }
-    words.back().text += small_letter(cell, at);
+    words.back().text += small_letter_at(cell, at);
   }
   return words;
 }
@@ -235,8 +231,8 @@ class NameReader final {
       is_first_ = false;
       return true;
     }
-    if (is_one_of(word, kStandardWords) ||
-        (is_uncertainty_ && is_one_of(word, kStandardWordsBehind))) {
+    if (is_one_of(word, kStandardNames) ||
+        (is_uncertainty_ && is_one_of(word, kStandardNamesBehind))) {
       is_standard_ = true;
       return true;
     }
@@ -286,7 +282,7 @@ class NameReader final {
   bool take_role(const std::string& word) {
     if (is_one_of(word, kUncertaintyWords)) {
       is_uncertainty_ = true;
-      is_standard_ = is_standard_ || is_one_of(word, kStandardWords);
+      is_standard_ = is_standard_ || is_one_of(word, kStandardNames);
       return true;
     }
     if (role_ != Role::kIgnored) {
@@ -549,7 +545,7 @@ std::size_t skip_blanks(std::string_view text, std::size_t at) noexcept {
   return at;
 }
 
-bool is_letter(char c) noexcept { return is_part_of_word(c) && !is_digit(c) && c != '%'; }
+bool is_letter_of_word(char c) noexcept { return is_part_of_word(c) && !is_digit(c) && c != '%'; }
 
 // At a small k that is a word: "k = 2", "k=2,00"; "k2" and "k 2" where `is_uncertainty`.
 CoverageFactor coverage_at_k(std::string_view text, std::size_t at, bool is_uncertainty) {
@@ -558,7 +554,7 @@ CoverageFactor coverage_at_k(std::string_view text, std::size_t at, bool is_unce
   next = has_sign ? skip_blanks(text, next + 1) : next;
   const SmallNumber number = small_number(text.substr(std::min(next, text.size())));
   const std::size_t end = next + number.length;
-  const bool is_whole = end >= text.size() || !is_letter(text[end]);
+  const bool is_whole = end >= text.size() || !is_letter_of_word(text[end]);
   if (number.length == 0 || !is_whole || !(has_sign || is_uncertainty)) {
     return {};
   }

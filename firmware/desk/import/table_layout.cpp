@@ -10,6 +10,7 @@
 #include "emax/base/status.hpp"
 
 #include "desk/import/input_units.hpp"
+#include "desk/import/letters.hpp"
 
 namespace emax::desk {
 
@@ -30,7 +31,7 @@ constexpr std::string_view kSheetErrors[] = {"#n/a",   "#nv",      "#div/0!", "#
 
 bool is_blank(char character) noexcept { return character == ' ' || character == '\t'; }
 
-std::string_view trim(std::string_view text) noexcept {
+std::string_view trim_cell(std::string_view text) noexcept {
   for (;;) {
     if (!text.empty() && is_blank(text.front())) {
       text.remove_prefix(1);
@@ -63,14 +64,9 @@ bool separates(char character, Separator separator) noexcept {
   return false;
 }
 
-char lower(char character) noexcept {
-  return character >= 'A' && character <= 'Z' ? static_cast<char>(character - 'A' + 'a')
-                                              : character;
-}
-
 bool is_word(std::string_view text, std::string_view word) noexcept {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(),
-                    [](char a, char b) { return lower(a) == b; });
+                    [](char a, char b) { return small_letter(a) == b; });
 }
 
 // Words that elsewhere stand for numbers.
@@ -82,7 +78,7 @@ bool is_word_for_no_number(std::string_view text) noexcept {
 }
 
 template <std::size_t kCount>
-bool is_one_of(std::string_view text, const std::string_view (&words)[kCount]) noexcept {
+bool is_any_word(std::string_view text, const std::string_view (&words)[kCount]) noexcept {
   return std::any_of(std::begin(words), std::end(words),
                      [text](std::string_view word) { return is_word(text, word); });
 }
@@ -92,8 +88,6 @@ bool starts_sheet_error(std::string_view text) noexcept {
       std::begin(kSheetErrors), std::end(kSheetErrors),
       [text](std::string_view word) { return is_word(text.substr(0, word.size()), word); });
 }
-
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 // A cell as `parse_decimal()` reads it, and what was taken out for that.
 struct PlainNumber {
@@ -157,7 +151,7 @@ class NumberCleaner final {
   }
 
   void take(char c) {
-    if (c == decimal_ || lower(c) == 'e') {
+    if (c == decimal_ || small_letter(c) == 'e') {
       plain_.is_grouped_well = plain_.is_grouped_well && (plain_.groups == 0 || ends_group());
       digits_ = kGroup;  // What comes now is no group.
       plain_.has_decimal_sign = plain_.has_decimal_sign || c == decimal_;
@@ -237,7 +231,7 @@ const char* name_of(Separator separator) noexcept {
 
 std::vector<std::string> cells_of(std::string_view line, Separator separator) {
   std::vector<std::string> cells;
-  line = trim(line);
+  line = trim_cell(line);
   std::size_t at = 0;
   for (;;) {
     std::string cell;
@@ -250,7 +244,7 @@ std::vector<std::string> cells_of(std::string_view line, Separator separator) {
     while (at < line.size() && !separates(line[at], separator)) {
       cell += line[at++];
     }
-    cells.emplace_back(trim(cell));
+    cells.emplace_back(trim_cell(cell));
     if (at >= line.size()) {
       return cells;
     }
@@ -280,7 +274,7 @@ std::string_view without_comment(std::string_view line) noexcept {
 }
 
 bool is_comment(std::string_view line) noexcept {
-  line = trim(line);
+  line = trim_cell(line);
   if (line.empty() || line.front() == '%' || (line.front() == '#' && !starts_sheet_error(line))) {
     return true;
   }
@@ -293,7 +287,7 @@ namespace {
 bool drop_half_width(std::string_view& text) noexcept {
   for (const std::string_view sign : kHalfWidths) {
     if (text.substr(0, sign.size()) == sign) {
-      text = trim(text.substr(sign.size()));
+      text = trim_cell(text.substr(sign.size()));
       return true;
     }
   }
@@ -322,7 +316,7 @@ Cell read_plain_cell(std::string_view text, bool has_decimal_comma) {
 }  // namespace
 
 Cell read_cell(std::string_view text, bool has_decimal_comma) {
-  if (text.empty() || is_one_of(text, kNotAvailable)) {
+  if (text.empty() || is_any_word(text, kNotAvailable)) {
     return {};
   }
   const bool is_half_width = drop_half_width(text);
@@ -338,7 +332,7 @@ CellWithUnit read_cell_with_unit(std::string_view text, bool has_decimal_comma) 
   }
   constexpr std::size_t kLongestUnit = 40;
   const std::size_t length = length_of_number(text, has_decimal_comma);
-  const std::string_view unit = trim(text.substr(length));
+  const std::string_view unit = trim_cell(text.substr(length));
   if (length > 0 && unit.size() <= kLongestUnit && find_unit(unit).is_given()) {
     result = {read_cell(text.substr(0, length), has_decimal_comma), unit};
   }
@@ -349,7 +343,7 @@ namespace {
 
 // A last column may have remarks.
 bool is_remark(const std::string& cell) noexcept {
-  const char first = cell.empty() ? '\0' : lower(cell.front());
+  const char first = cell.empty() ? '\0' : small_letter(cell.front());
   return (first >= 'a' && first <= 'z') || static_cast<unsigned char>(first) >= 0x80;
 }
 

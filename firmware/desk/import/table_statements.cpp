@@ -9,6 +9,7 @@
 
 #include "desk/import/conversions.hpp"
 #include "desk/import/input_units.hpp"
+#include "desk/import/letters.hpp"
 
 namespace emax::desk {
 
@@ -24,22 +25,22 @@ constexpr std::string_view kCoverageWords[] = {"coverage factor", "erweiterungsf
 constexpr std::string_view kUncertaintyStems[] = {"uncertaint",    "unsicherheit", "incertitude",
                                                   "incertidumbre", "coverage",     "erweiterungs",
                                                   "largissement"};
-constexpr std::string_view kStandardWords[] = {"standard uncertaint", "standardunsicherheit",
-                                               "standardmessunsicherheit", "incertitude-type",
-                                               "incertitude type"};
+constexpr std::string_view kStandardPhrases[] = {"standard uncertaint", "standardunsicherheit",
+                                                 "standardmessunsicherheit", "incertitude-type",
+                                                 "incertitude type"};
 constexpr std::string_view kExpandedWords[] = {"expanded", "erweitert", "multipli", "largie"};
 constexpr std::string_view kReferenceWords[] = {"referen", "f\xC3\xA9rence", "des normals"};
 constexpr std::string_view kUnitWords[] = {"units",         "unit",         "einheiten", "einheit",
                                            "unit\xC3\xA9s", "unit\xC3\xA9", "unidades"};
 
-bool is_letter(char c) noexcept {
-  return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+bool is_letter_of_stem(char c) noexcept {
+  return is_small_letter(c) || static_cast<unsigned char>(c) >= 0x80;
 }
 
 std::string small(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    result += small_letter(c);
   }
   return result;
 }
@@ -51,7 +52,7 @@ bool has_any(std::string_view text, const std::string_view (&words)[kCount]) {
   });
 }
 
-std::string_view trim(std::string_view text) noexcept {
+std::string_view trim_statement(std::string_view text) noexcept {
   constexpr std::string_view kAround = " \t\"#%:=";
   const std::size_t begin = text.find_first_not_of(kAround);
   if (begin == std::string_view::npos) {
@@ -66,8 +67,8 @@ std::size_t behind(std::string_view text, const std::string_view (&words)[kCount
   for (const std::string_view word : words) {
     const std::size_t at = text.find(word);
     const std::size_t end = at + word.size();
-    if (at != std::string_view::npos && (at == 0 || !is_letter(text[at - 1])) &&
-        (end == text.size() || !is_letter(text[end]))) {
+    if (at != std::string_view::npos && (at == 0 || !is_letter_of_stem(text[at - 1])) &&
+        (end == text.size() || !is_letter_of_stem(text[end]))) {
       return end;
     }
   }
@@ -78,7 +79,7 @@ std::vector<std::string_view> parts_of(std::string_view text) {
   std::vector<std::string_view> parts;
   for (;;) {
     const std::size_t end = text.find_first_of(",;\t");
-    const std::string_view part = trim(text.substr(0, end));
+    const std::string_view part = trim_statement(text.substr(0, end));
     if (!part.empty()) {
       parts.push_back(part);
     }
@@ -133,7 +134,7 @@ double coverage_in(std::string_view line) {
   const CoverageFactor found = find_coverage(line, false);
   if (found.value > 0.0) {
     // A unit or a word behind it makes it another k, but where the line is about uncertainties.
-    const std::string_view rest = trim(line.substr(found.begin + found.length));
+    const std::string_view rest = trim_statement(line.substr(found.begin + found.length));
     const bool is_alone = rest.empty() || rest.front() == ')' || rest.front() == '(' ||
                           rest.front() == ',' || rest.front() == ';' || rest.front() == '.';
     if (is_alone || has_any(letters, kUncertaintyStems)) {
@@ -155,7 +156,7 @@ std::string text_of_coverage(double coverage) { return "k = " + text_of_number(c
 
 bool is_statement(std::string_view text) {
   const std::string letters = small(text);
-  return coverage_in(text) > 0.0 || has_any(letters, kStandardWords) ||
+  return coverage_in(text) > 0.0 || has_any(letters, kStandardPhrases) ||
          behind(letters, kUnitWords) < letters.size();
 }
 
@@ -171,7 +172,8 @@ ImportError StatementReader::take_coverage(std::size_t line, std::string_view te
     return {};
   }
   speaks_of_expanded_ = speaks_of_expanded_ || has_any(letters, kExpandedWords);
-  standard_line_ = standard_line_ == 0 && has_any(letters, kStandardWords) ? line : standard_line_;
+  standard_line_ =
+      standard_line_ == 0 && has_any(letters, kStandardPhrases) ? line : standard_line_;
   const double coverage = coverage_in(text);
   if (!(coverage >= kLeastCoverage) || !(coverage <= kMostCoverage)) {
     return {};
@@ -190,7 +192,9 @@ ImportError StatementReader::take_coverage(std::size_t line, std::string_view te
 
 void StatementReader::take_doubtful(std::size_t line, std::string_view text) {
   const double stated = coverage_in(text);
-  const double coverage = stated > 0.0 ? stated : has_any(small(text), kStandardWords) ? 1.0 : 0.0;
+  const double coverage = stated > 0.0                             ? stated
+                          : has_any(small(text), kStandardPhrases) ? 1.0
+                                                                   : 0.0;
   if (coverage >= kLeastCoverage && coverage <= kMostCoverage && coverage != kImportCoverage) {
     statements_.doubtful_coverage = coverage;
     statements_.doubtful_line = line;
