@@ -86,7 +86,7 @@ endforeach()
 find_program(EMAX_CLANG_TIDY clang-tidy REQUIRED)
 file(GLOB tidied RELATIVE ${PROJECT_SOURCE_DIR}
   algo/src/*/*.cpp hal/src/*.cpp hal/sim/src/*.cpp
-  firmware/app/src/*/*.cpp firmware/desk/*/*.cpp firmware/boards/host/*.cpp)
+  firmware/app/src/*/*.cpp firmware/boards/host/*.cpp)
 # Of the sources of boards, those that the PC's tests build too.
 file(GLOB common RELATIVE ${PROJECT_SOURCE_DIR} host_tests/boards/test_*.cpp)
 list(TRANSFORM common REPLACE "host_tests/boards/test_(.*)" "firmware/boards/common/src/\\1")
@@ -104,11 +104,23 @@ foreach(source IN LISTS tidied common)
     COMMAND ${EMAX_CLANG_TIDY} --quiet --checks=-clang-analyzer-* -p ${PROJECT_SOURCE_DIR}/build/host-sanitize
       ${PROJECT_SOURCE_DIR}/${source})
 endforeach()
+# The standard library's headers are most of what these read.
+set(desk "")
+file(GLOB folders LIST_DIRECTORIES true RELATIVE ${PROJECT_SOURCE_DIR} firmware/desk/*)
+foreach(folder IN LISTS folders)
+  file(GLOB sources ${folder}/*.cpp)
+  if(sources)
+    add_test(NAME style.tidy.${folder}
+      COMMAND ${EMAX_PYTHON} -B ${CMAKE_CURRENT_LIST_DIR}/tidy_folder.py ${EMAX_CLANG_TIDY} ${PROJECT_SOURCE_DIR}/.clang-tidy
+        ${PROJECT_SOURCE_DIR}/build/host-sanitize ${PROJECT_BINARY_DIR}/tidy/${folder}.cpp ${sources})
+    list(APPEND desk ${sources})
+  endif()
+endforeach()
 # cmake --build build/check --target analyze, by hand: with the analyzer it takes four times as long.
 list(TRANSFORM tidied PREPEND ${PROJECT_SOURCE_DIR}/)
 list(TRANSFORM common PREPEND ${PROJECT_SOURCE_DIR}/)
 add_custom_target(analyze
-  COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-sanitize ${tidied} ${common} VERBATIM)
+  COMMAND ${EMAX_CLANG_TIDY} --quiet -p ${PROJECT_SOURCE_DIR}/build/host-sanitize ${tidied} ${common} ${desk} VERBATIM)
 
 get_property(tests DIRECTORY PROPERTY TESTS)
 set_tests_properties(${tests} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT})
