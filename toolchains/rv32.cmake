@@ -1,5 +1,7 @@
 # RV32IMAFDC with riscv64-unknown-elf-gcc and picolibc: floating point in double precision.
 
+set(EMAX_CORE_OPTIMISATION -O2)
+include(${CMAKE_CURRENT_LIST_DIR}/core_optimisation.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/arm_libstdcxx.cmake)
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR rv32)

@@ -1,5 +1,7 @@
 # WebAssembly with clang and wasm-ld: what a browser runs. No C library; the C++ headers are those of the microcontrollers.
 
+set(EMAX_CORE_OPTIMISATION -O2)
+include(${CMAKE_CURRENT_LIST_DIR}/core_optimisation.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/arm_libstdcxx.cmake)
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
