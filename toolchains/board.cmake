@@ -12,6 +12,14 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   SOURCES <file>...      Startup and drivers.
 #   PRODUCT <file>         Makes what the board runs where that is no image with startup and memory map: nothing of
 #                          common/images.cmake is then made, and of the four above only CORE is needed.
+#   BUDGET <flash> <ram> <stack>  The most bytes that an image may take, for the gates. Flash is code, constants and what
+#                          variables start with; RAM is all variables, without the stack and without what stands in for a
+#                          flash memory of records; stack is the deepest that the call graph proves, interrupts and faults
+#                          included. Without it: 278528 122880 8192, a chip with 128 KiB of RAM.
+#   INTERRUPT_LEVELS <handlers>...  For each level of priority one text with the interrupt handlers that never interrupt one
+#                          another, as "*::on_console *::on_clock", with * for any characters. The proof of the stack takes
+#                          handlers of a Cortex-M that are in no text for ones that interrupt all others: their stacks add
+#                          up. A text is a claim about what the image writes into the interrupt controller.
 #   CHECK <file>           Adds the tests of such a product, for preset `check`.
 #   INCLUDES <folder>...   Their headers.
 #   SIMULATED_BENCH        The analog side is hal/sim, and about() tells what that was built from.
@@ -34,7 +42,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 function(emax_declare_board)
   set(flags SIMULATED_BENCH WATCHDOG SEMIHOSTING TELNET_BREAK)
   set(values CORE PRODUCT CHECK CLOCK_HZ INTERRUPTS COUNTER INSTRUCTION_NS CORE_TITLE TABLE_CLOCK_MHZ GOOGLETEST_MEMORY SLOW_TEST_S)
-  set(lists SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
+  set(lists BUDGET INTERRUPT_LEVELS SOURCES INCLUDES RUNNER FLASH TABLE_LEFT_OUT EXTRA_JOBS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "${flags}" "${values}" "${lists}")
   set(file ${EMAX_BOARD_FOLDER}/board.cmake)
   if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
@@ -49,6 +57,12 @@ function(emax_declare_board)
       message(FATAL_ERROR "${file} does not declare ${keyword}")
     endif()
   endforeach()
+  if(NOT arg_BUDGET)
+    set(arg_BUDGET 278528 122880 8192)
+  endif()
+  if(NOT "${arg_BUDGET}" MATCHES "^[0-9]+;[0-9]+;[0-9]+$")
+    message(FATAL_ERROR "${file}: BUDGET takes three numbers, of bytes of flash, RAM and stack")
+  endif()
   emax_demand_with(CHECK PRODUCT)
   emax_demand_with(RUNNER SEMIHOSTING)
   emax_demand_with(GOOGLETEST_MEMORY RUNNER SLOW_TEST_S)

@@ -14,7 +14,7 @@ function(emax_add_product_gates configuration)
   add_test(NAME ${name}.symbols COMMAND ${gate}image_symbols.py
     --tree ${PROJECT_SOURCE_DIR}/build/${configuration} ${product})
   add_test(NAME ${name}.footprint COMMAND ${gate}footprint.py
-    --budgets ${PROJECT_SOURCE_DIR}/toolchains/budgets.txt ${product})
+    --budget ${EMAX_BOARD_BUDGET} ${product})
   set_tests_properties(${name}.symbols ${name}.footprint PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT} LABELS ${configuration})
 endfunction()
 

@@ -1,7 +1,6 @@
 # The gates on the images of a board, as tests: emax_gate_image().
 
 set(EMAX_GATES ${CMAKE_CURRENT_LIST_DIR}/gates)
-set(EMAX_BUDGETS ${CMAKE_CURRENT_LIST_DIR}/budgets.txt)
 set(EMAX_INDIRECT_CALLS ${EMAX_GATES}/indirect_calls.txt)
 if(EMAX_TESTS)
   include(${CMAKE_CURRENT_LIST_DIR}/python.cmake)
@@ -33,7 +32,7 @@ function(emax_gate_image image)
   # Not the linked image: where the product is exact, the compiler's own conversions do fuse.
   emax_add_gate(${image}.contraction contraction.py --objdump ${CMAKE_OBJDUMP} $<TARGET_OBJECTS:${image}>)
   emax_add_gate(${image}.footprint footprint.py
-    --budgets ${EMAX_BUDGETS} --recorded ${PROJECT_SOURCE_DIR}/firmware/README.md ${linked})
+    --budget ${EMAX_BOARD_BUDGET} --recorded ${PROJECT_SOURCE_DIR}/firmware/README.md ${linked})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     emax_gate_stack(${image} ${arg_RUN})
   endif()
@@ -43,7 +42,8 @@ function(emax_gate_stack image run)
   set(folders "")
   emax_collect_callgraphs(${image} folders)
   emax_add_gate(${image}.stack stack.py --objdump ${CMAKE_OBJDUMP} --calls ${EMAX_INDIRECT_CALLS}
-    --budgets ${EMAX_BUDGETS} --callgraph ${folders} --image $<TARGET_FILE:${image}>)
+    --levels ${EMAX_BOARD_INTERRUPT_LEVELS} --budget ${EMAX_BOARD_BUDGET}
+    --callgraph ${folders} --image $<TARGET_FILE:${image}>)
   list(JOIN folders "\", \"" folders)
   set_property(GLOBAL APPEND PROPERTY EMAX_GATED_IMAGES "\n    \"${image}\": [\"${folders}\"]")
   get_property(deferred GLOBAL PROPERTY EMAX_WRITES_IMAGES)
@@ -88,7 +88,7 @@ endfunction()
 function(emax_write_images)
   get_property(images GLOBAL PROPERTY EMAX_GATED_IMAGES)
   list(JOIN images "," images)
-  emax_to_json(EMAX_BOARD_RUNNER EMAX_BOARD_TABLE_LEFT_OUT)
+  emax_to_json(EMAX_BOARD_RUNNER EMAX_BOARD_TABLE_LEFT_OUT EMAX_BOARD_INTERRUPT_LEVELS)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/images.json CONTENT [[{
   "name": "@EMAX_BOARD_NAME@",
   "core": "@EMAX_BOARD_CORE@",
@@ -98,6 +98,7 @@ function(emax_write_images)
   "runner": [@EMAX_BOARD_RUNNER@],
   "instruction_ns": "@EMAX_BOARD_INSTRUCTION_NS@",
   "objdump": "@CMAKE_OBJDUMP@",
+  "interrupt_levels": [@EMAX_BOARD_INTERRUPT_LEVELS@],
   "images": {@images@
   }
 }

@@ -54,6 +54,6 @@ emax_collect_callgraphs(emax_board folders)
 set(test ${EMAX_CONFIGURATION}.gates.refuse_bad_images)
 add_test(NAME ${test}
   COMMAND ${EMAX_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/test_images.py --gates ${EMAX_GATES} --objdump ${CMAKE_OBJDUMP}
-    --budgets ${CMAKE_CURRENT_SOURCE_DIR}/budgets.txt --callgraph ${folders} --images ${images}
+    --levels ${EMAX_BOARD_INTERRUPT_LEVELS} --callgraph ${folders} --images ${images}
   COMMAND_EXPAND_LISTS)
 set_tests_properties(${test} PROPERTIES TIMEOUT ${EMAX_TEST_TIMEOUT} LABELS ${EMAX_CONFIGURATION})

@@ -156,7 +156,7 @@ def measure_sizes(boards: list[Board], calls: str) -> dict[str, dict[str, "int |
     for board in boards:
         for image in board.images:
             linked = Image(board.path(image))
-            proof = prove(linked, board.objdump, board.images[image], calls)
+            proof = prove(linked, board.objdump, board.images[image], calls, board.interrupt_levels)
             found[image] = {
                 **footprint.used(linked),
                 "proven": proof.bytes,

@@ -1,6 +1,6 @@
 """Holds the flash and the static memory of a linked image against its budget.
 
-usage: footprint.py --budgets BUDGETS.TXT [--recorded README.MD] IMAGE
+usage: footprint.py --budget FLASH RAM STACK [--recorded README.MD] IMAGE
 
 Flash is code, constants and the values that variables start with. Static memory is all variables, without the stack and
 without .store, which stands in for a flash memory of records. With a README that has the table of the footprints, prints by how much the image has
@@ -27,7 +27,7 @@ def used(image: Image) -> dict[str, int]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--budgets", required=True)
+    budgets.add_option(parser)
     parser.add_argument("--recorded")
     parser.add_argument("image")
     arguments = parser.parse_args()
@@ -36,7 +36,7 @@ def main() -> int:
     taken = used(image)
     if taken["flash"] == 0:
         sys.exit(f"footprint: {image.path} has no code")
-    over = budgets.judge(arguments.budgets, image.name, taken)
+    over = budgets.judge(arguments.budget, taken)
     if arguments.recorded and (row := tables.footprint(arguments.recorded).get(image.name)):
         for what, now in taken.items():
             print(f"{what}: {now - row[what]:+} bytes since the table in {arguments.recorded}")

@@ -39,6 +39,7 @@ class Board(NamedTuple):
     runner: list[str]  # Before an image and its arguments; empty if nothing runs it.
     instruction_ns: str  # Of the machine's time, while the counter counts.
     objdump: str
+    interrupt_levels: list[str]  # The handlers of each priority.
     images: dict[str, list[str]]  # With the folders of their call graphs.
 
     @classmethod

@@ -1,6 +1,7 @@
 """Proves how deep the stack of a linked image can get, from its call graph.
 
-usage: stack.py --objdump OBJDUMP --calls INDIRECT_CALLS.TXT --budgets BUDGETS.TXT --callgraph FOLDER... --image IMAGE
+usage: stack.py --objdump OBJDUMP --calls INDIRECT_CALLS.TXT --levels HANDLERS... --budget FLASH RAM STACK
+                --callgraph FOLDER... --image IMAGE
 
 Every instruction of the image is followed with what it does to the stack: that gives the frame of each function and
 the depth at each of its calls, for those of the libraries too. gcc's call graph (the .ci files that
@@ -9,11 +10,10 @@ a pointer stands in the source. The name called there decides which functions it
 that have this name, or those that INDIRECT_CALLS.TXT lists.
 
 Proven is the deepest chain from the reset on, plus the worst interrupt of each level of priority on top of it, plus the
-worst fault on top of that. Which handlers share a level, interrupt_levels.txt says; all others have one of their own.
-A trap handler of RISC-V must not let other interrupts through. Code that changes to another stack must fit between
-fault_stack_limit and fault_stack_top. Prints these chains
-and exits with 1 if the image is over its budget, has recursion, an array on the stack whose size only the running
-program knows, or a call whose targets are not known.
+worst fault on top of that. HANDLERS are those of one level, as "*::on_console *::on_clock"; all others have one of
+their own. A trap handler of RISC-V must not let other interrupts through. Code that changes to another stack must fit
+between fault_stack_limit and fault_stack_top. Prints these chains and exits with 1 if the image is over its budget, has
+recursion, an array on the stack whose size only the running program knows, or a call whose targets are not known.
 """
 
 import argparse
@@ -39,7 +39,6 @@ EXCEPTION_FRAME, EXCEPTION_FRAME_WITH_FPU = 32 + 4, 104 + 4
 # The places of the vector table: exceptions that preempt interrupts, then interrupts.
 VECTORS = "vectors"
 FIRST_FAULT, LAST_FAULT = 2, 6
-INTERRUPT_LEVELS = Path(__file__).with_name("interrupt_levels.txt")
 FAULT_STACK = ("fault_stack_limit", "fault_stack_top")
 STACK_THAT_GROWS = 1 << 20
 MOST_OF_A_KIND = 5  # Problems that have one cause.
@@ -182,12 +181,6 @@ def read_rules(path: str) -> list[Rule]:
             sys.exit(f"{path}:{number}: expected '<file> <name> -> <function>...' or '<function> -> itself'")
         rules.append(Rule(file, name.strip(), callees.split()))
     return rules
-
-
-def read_levels(path: Path, image: str) -> list[list[str]]:
-    """Of this image, the handlers of each level of priority."""
-    lines = [line.partition("#")[0].split() for line in path.read_text().splitlines()]
-    return [fields[1:] for fields in lines if fields and fnmatch.fnmatchcase(image, fields[0])]
 
 
 class Program:
@@ -417,11 +410,11 @@ class Program:
                 (faults if number <= LAST_FAULT else interrupts).add(target)
         return interrupts, faults
 
-    def interrupt_levels(self) -> list[set[int]]:
+    def interrupt_levels(self, levels_of_board: list[str]) -> list[set[int]]:
         """The handlers of each level of priority."""
         left = set(self.handlers()[0])
         found = []
-        for patterns in read_levels(INTERRUPT_LEVELS, self.image.name):
+        for patterns in map(str.split, levels_of_board):
             shared = {a for a in left if any(self._is_called(a, pattern) for pattern in patterns)}
             found.append(shared)
             left -= shared
@@ -470,12 +463,12 @@ class Level(NamedTuple):
     chain: list[Function]
 
 
-def levels(program: Program) -> list[Level]:
+def levels(program: Program, levels_of_board: list[str]) -> list[Level]:
     """The main stack, and what is piled up there."""
     entry = program.image.entry
     roots = {entry, *program.switched(entry)}
     found = [Level("main", 0, *worst(program, roots))]
-    for handlers in program.interrupt_levels():
+    for handlers in program.interrupt_levels(levels_of_board):
         found.append(Level("interrupt", pushed_by(program), *worst(program, handlers)))
     if faults := program.handlers()[1]:
         found.append(Level("fault", pushed_by(program), *worst(program, faults)))
@@ -517,13 +510,13 @@ class Proof(NamedTuple):
     problems: list[str]
 
 
-def prove(image: Image, objdump: str, folders: list[str], calls: str) -> Proof:
+def prove(image: Image, objdump: str, folders: list[str], calls: str, levels_of_board: list[str]) -> Proof:
     program = Program(image, objdump, Graph(folders), read_rules(calls))
     if image.entry not in program.codes:
         sys.exit(f"stack: {image.path} has no code at its entry")
     if not program.nodes:
         sys.exit("stack: no function of the image has a call graph; compile with -fcallgraph-info=su")
-    found = levels(program)
+    found = levels(program, levels_of_board)
     proven = sum(level.pushed + level.bytes for level in found)
     if other := fault_stack(program):
         size, level = other
@@ -543,19 +536,20 @@ def main() -> int:
     parser.add_argument("--objdump", required=True)
     parser.add_argument("--calls", required=True)
     parser.add_argument("--callgraph", nargs="+", required=True, metavar="FOLDER")
-    parser.add_argument("--budgets", required=True)
+    parser.add_argument("--levels", nargs="*", default=[], metavar="HANDLERS")
+    budgets.add_option(parser)
     parser.add_argument("--image", required=True)
     arguments = parser.parse_args()
 
     image = Image(arguments.image)
-    proof = prove(image, arguments.objdump, arguments.callgraph, arguments.calls)
+    proof = prove(image, arguments.objdump, arguments.callgraph, arguments.calls, arguments.levels)
     for level in proof.levels:
         show(level)
     for note in proof.notes:
         print(f"other frame than gcc says: {note}")
     print(f"{proof.functions} functions, {proof.functions_of_gcc} of them with a call graph")
     print(f"proven: {proof.bytes} bytes of stack")
-    problems = proof.problems + budgets.judge(arguments.budgets, image.name, {"stack": proof.bytes})
+    problems = proof.problems + budgets.judge(arguments.budget, {"stack": proof.bytes})
     for problem in problems:
         print(f"{image.name}: {problem}")
     return 1 if problems else 0

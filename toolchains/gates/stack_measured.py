@@ -26,7 +26,7 @@ def main() -> int:
 
     board = Board.read(arguments.tree)
     linked = Image(board.path(arguments.image))
-    proven = prove(linked, board.objdump, board.images[arguments.image], arguments.calls).bytes
+    proven = prove(linked, board.objdump, board.images[arguments.image], arguments.calls, board.interrupt_levels).bytes
     measured = measured_stack(board, arguments.image)
     print(f"{arguments.image}: {measured} bytes of stack measured, {proven} proven, {measured / proven:.0%}")
     if measured > proven:

@@ -1,6 +1,6 @@
 """Holds a module of WebAssembly against what the product promises.
 
-usage: wasm_module.py --budgets BUDGETS.TXT [--heap] [--imports NAME,...] --exports NAME,... MODULE
+usage: wasm_module.py --budget FLASH RAM STACK [--heap] [--imports NAME,...] --exports NAME,... MODULE
 
 The module may import and export exactly these functions, beside its memory; that memory has one size and cannot grow,
 and is within its budget, as are the bytes of the module without names. No code runs before the first call, no function
@@ -130,7 +130,7 @@ def breaches(module: Module, imports: set[str], exports: set[str], has_heap: boo
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--budgets", required=True)
+    budgets.add_option(parser)
     parser.add_argument("--heap", action="store_true")
     parser.add_argument("--imports", default="")
     parser.add_argument("--exports", required=True)
@@ -145,7 +145,7 @@ def main() -> int:
         arguments.heap,
     )
     used = {"flash": module.bytes, "ram": PAGE * sum(least for least, _ in module.memories)}
-    complaints += budgets.judge(arguments.budgets, arguments.module.stem, used)
+    complaints += budgets.judge(arguments.budget, used)
     for complaint in complaints:
         print(f"{arguments.module.name}: {complaint}")
     return 1 if complaints else 0

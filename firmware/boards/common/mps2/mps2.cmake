@@ -3,6 +3,8 @@
 set(EMAX_MPS2
   CLOCK_HZ 25000000
   INTERRUPTS 32
+  # No priority is written, so all have the same.
+  INTERRUPT_LEVELS "*::on_receive *::on_transmit *::on_clock *::on_fault"
   SIMULATED_BENCH
   WATCHDOG
   SEMIHOSTING

@@ -3,6 +3,8 @@
 set(EMAX_STM32_INCLUDES
   ${EMAX_BOARD_COMMON}/cortex_m/include
   ${EMAX_BOARD_COMMON}/stm32/include)
+# As start_drivers() sets them, which the tests on the chip models read back.
+set(EMAX_STM32_INTERRUPT_LEVELS "*::on_console *::on_output *::on_clock" "*::on_watchdog *::on_fault")
 set(EMAX_STM32_SOURCES
   ${EMAX_BOARD_COMMON}/cortex_m/src/reset_cause.cpp
   ${EMAX_BOARD_COMMON}/cortex_m/src/start.cpp
