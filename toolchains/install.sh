@@ -4,10 +4,12 @@ set -eu
 
 usage() {
   cat <<'TEXT'
-usage: toolchains/install.sh [host | web | target]
+usage: toolchains/install.sh [host | web | arm | target]
 
   host     what builds and runs the program on this PC: 0.1 GB to download, 0.4 GB installed
   web      what builds the page emax.html, which a browser runs
+  arm      what builds and checks the firmware of a board with an Arm core, to flash it: 0.5 GB to download, 2.6 GB
+           installed
   target   what host installs, and what builds the firmware and runs it in an emulator: 0.8 GB, 4.5 GB installed
   none     that, and everything the tests of all configurations need: 1 GB, 5.5 GB installed
 
@@ -18,6 +20,7 @@ TEXT
 build_packages='cmake g++ gnuplot-nox ninja-build'
 target_packages="gcc-arm-none-eabi gcc-riscv64-unknown-elf googletest libnewlib-arm-none-eabi \
 libstdc++-arm-none-eabi-newlib picolibc-riscv64-unknown-elf python3 python3-mpmath python3-numpy qemu-system-arm qemu-system-misc"
+arm_packages="cmake gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib ninja-build python3 python3-numpy"
 web_packages="clang cmake gcc-arm-none-eabi libnewlib-dev libstdc++-arm-none-eabi-newlib lld ninja-build python3"
 check_packages="chromium clang clang-format clang-tidy libbenchmark-dev libclang-rt-dev libgtest-dev libunicorn-dev lld \
 poppler-utils python3-pyvisa python3-pyvisa-py"
@@ -29,6 +32,7 @@ fi
 case "${1-all}" in
   host) wanted=$build_packages ;;
   web) wanted=$web_packages ;;
+  arm) wanted=$arm_packages ;;
   target) wanted="$build_packages $target_packages" ;;
   all) wanted="$build_packages $target_packages $check_packages" ;;
   -h | --help)
