@@ -8,10 +8,13 @@ import json
 import math
 import os
 import pathlib
+import pty
 import re
 import subprocess
 import sys
 import tempfile
+import termios
+import tty
 import unittest
 import xml.etree.ElementTree
 
@@ -24,6 +27,28 @@ DESK = (PROJECT / "firmware/desk/README.md").read_text(encoding="utf-8")
 CLAIMS = (PROJECT / "host_tests/reference/README.md").read_text(encoding="utf-8")
 SHOWN = PROJECT / "firmware/desk/pictures/readme"
 ADDRESS = "TCPIP::127.0.0.1::5025::SOCKET"
+# What PyVISA asks of pySerial, which need not be installed. The default speed is pySerial's own.
+SERIAL = '''
+import os, select, termios, tty
+class SerialTimeoutException(IOError): pass
+class Serial:
+    def __init__(self, port, baudrate=9600, timeout=None, write_timeout=None):
+        self.line, self.timeout = os.open(port, os.O_RDWR | os.O_NOCTTY), timeout
+        tty.setraw(self.line)
+        self.baudrate = baudrate
+    def __setattr__(self, name, value):
+        self.__dict__[name] = value
+        if name == "baudrate":
+            attributes = termios.tcgetattr(self.line)
+            attributes[4:6] = [getattr(termios, f"B{value}")] * 2
+            termios.tcsetattr(self.line, termios.TCSANOW, attributes)
+    def read(self, count):
+        return os.read(self.line, count) if select.select([self.line], [], [], self.timeout)[0] else b""
+    def write(self, data):
+        return os.write(self.line, data)
+    def close(self):
+        os.close(self.line)
+'''
 
 
 def texts_of(picture: pathlib.Path) -> list[str]:
@@ -171,13 +196,36 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual(command, f"python3 example.py {ADDRESS}")
         scripts = re.findall(r"^```python\n((?:.*\n)*?)```$", README, re.MULTILINE)
         self.assertEqual(len(scripts), 1)
-        self.assertEqual(scripts[0].count("\n"), 11, "eleven lines")
+        self.assertEqual(scripts[0].count("\n"), 12, "twelve lines")
         result = self.run_script(scripts[0])
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, printed, ""))
         # A fault ends it at once, and not with the patience of the client.
         result = self.run_script(scripts[0], "--bench-fault", "unplugged-device@3")
         self.assertEqual((result.returncode, result.stdout), (1, printed.splitlines()[0] + "\n"))
         self.assertRegex(result.stderr, r'^-240,"Hardware error;no device: [^"]*"\n$')
+
+    def test_pyvisa_on_a_serial_line(self):
+        """The same on a terminal in place of a board's line, at the speed that a board has."""
+        script = re.search(r"^```python\n((?:.*\n)*?)```$", README, re.MULTILINE)[1]
+        tools = self.directory / "serial/tools"
+        tools.mkdir(parents=True)
+        (tools.parent / "__init__.py").write_text(SERIAL)
+        (tools / "__init__.py").write_text("")
+        (tools / "list_ports.py").write_text("comports = list\n")
+        board, line = pty.openpty()
+        self.addCleanup(os.close, board)
+        self.addCleanup(os.close, line)
+        tty.setraw(line)
+        instrument = subprocess.Popen([PROGRAM, "scpi"], stdin=board, stdout=board, cwd=self.directory)
+        self.addCleanup(instrument.wait)
+        self.addCleanup(instrument.kill)
+        path = self.directory / "example.py"
+        path.write_text(script)
+        result = subprocess.run([sys.executable, "-W", "ignore", path, f"ASRL{os.ttyname(line)}::INSTR"], check=False,
+                                capture_output=True, text=True, timeout=500)
+        printed = self.session("python3 example.py ")[1]
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, printed, ""))
+        self.assertEqual(termios.tcgetattr(line)[4:6], [termios.B115200] * 2)
 
     def run_script(self, script: str, *options: str) -> subprocess.CompletedProcess:
         instrument = HostProgram(PROGRAM, *options)
