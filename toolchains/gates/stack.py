@@ -40,6 +40,7 @@ EXCEPTION_FRAME, EXCEPTION_FRAME_WITH_FPU = 32 + 4, 104 + 4
 VECTORS = "vectors"
 FIRST_FAULT, LAST_FAULT = 2, 6
 FAULT_STACK = ("fault_stack_limit", "fault_stack_top")
+SHOWN = "emax::EnergySearch::step"  # What other people's firmware calls: algo/README.md says how deep it gets.
 STACK_THAT_GROWS = 1 << 20
 MOST_OF_A_KIND = 5  # Problems that have one cause.
 
@@ -346,11 +347,11 @@ class Program:
         listed = [r for r in self.rules if r.name == place.name and r.name and place.file.endswith(r.file)]
         if listed:
             patterns = [pattern for rule in listed for pattern in rule.callees]
-            found = {a for a in self.taken if any(self._is_called(a, pattern) for pattern in patterns)}
+            found = {a for a in self.taken if any(self.is_called(a, pattern) for pattern in patterns)}
             return found if found or NOTHING in patterns else None
-        return {a for a in self.virtual if place.name and self._is_called(a, f"*::{place.name}")} or None
+        return {a for a in self.virtual if place.name and self.is_called(a, f"*::{place.name}")} or None
 
-    def _is_called(self, address: int, pattern: str) -> bool:
+    def is_called(self, address: int, pattern: str) -> bool:
         name = self.nodes[address].label if address in self.nodes else self.codes[address].label
         return fnmatch.fnmatchcase(name, pattern.replace("[", "[[]") + "(*") or name == pattern
 
@@ -415,7 +416,7 @@ class Program:
         left = set(self.handlers()[0])
         found = []
         for patterns in map(str.split, levels_of_board):
-            shared = {a for a in left if any(self._is_called(a, pattern) for pattern in patterns)}
+            shared = {a for a in left if any(self.is_called(a, pattern) for pattern in patterns)}
             found.append(shared)
             left -= shared
         return [level for level in found if level] + [{address} for address in sorted(left)]
@@ -524,6 +525,8 @@ def prove(image: Image, objdump: str, folders: list[str], calls: str, levels_of_
         if level.bytes + level.pushed > size:
             needed = level.bytes + level.pushed
             program.problems.append(f"the stack of the faults has {size} bytes, and {needed} are needed")
+    for address in sorted(a for a in program.nodes if program.is_called(a, SHOWN)):
+        found.append(Level(f"of these, a call of {SHOWN}()", 0, *program.deepest(address)))
     program.check_pointers()
     program.check_nesting()
     functions = program.functions.values()
