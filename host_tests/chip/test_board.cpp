@@ -42,8 +42,8 @@ TEST_F(RealImage, BootsToItsNameWithTheUniqueId) {
   EXPECT_EQ(board->chip.findings.text(), "");
 }
 
-// The proof of the stack relies on it (EMAX_STM32_INTERRUPT_LEVELS in stm32.cmake): console, output and
-// clock never interrupt one another, and the watchdog's timer interrupts all three.
+// The proof of the stack relies on it (EMAX_STM32_INTERRUPT_LEVELS in stm32.cmake): console, output
+// and clock never interrupt one another, and the watchdog's timer interrupts all three.
 TEST_F(RealImage, HasTwoLevelsOfInterrupts) {
   boot();
   std::vector<unsigned> ordinary;
