@@ -9,6 +9,7 @@
 
 #include "desk/cli/console.hpp"
 #include "desk/files/rounding.hpp"
+#include "desk/report/failure_words.hpp"
 #include "support/string_sink.hpp"
 
 namespace emax::desk {
@@ -23,6 +24,15 @@ std::string repeated(const std::string& text, int count) {
     all += text;
   }
   return all;
+}
+
+TEST(InLine, JoinsSentencesBySemicolons) {
+  EXPECT_EQ(in_line(""), "");
+  EXPECT_EQ(in_line("The points leave beta open."), "the points leave beta open");
+  EXPECT_EQ(in_line("Degrees were taken. As radians they fit, with beta = 0.5. A delay does not."),
+            "degrees were taken; as radians they fit, with beta = 0.5; a delay does not");
+  EXPECT_EQ(in_line("Nothing is known. S alone is. T = 2 ms is too long."),
+            "nothing is known; S alone is; T = 2 ms is too long");
 }
 
 TEST(Printable, LeavesWhatStandsInALineAsItIs) {

@@ -20,11 +20,21 @@ namespace emax::desk {
 std::string in_line(const std::string& text) {
   std::string line;
   bool starts = true;
+  bool starts_next = false;  // Behind the end of a sentence.
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool ends = i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == ')';
     if (c == '.' && ends) {
+      const bool goes_on = i + 2 < text.size() && text[i + 1] == ' ';
+      line += goes_on ? ";" : "";
+      starts_next = goes_on;
       continue;
+    }
+    if (starts_next && c != ' ') {
+      const bool is_word =
+          i + 1 < text.size() && (text[i + 1] == ' ' ? c == 'A' : text[i + 1] >= 'a');
+      starts = is_word;  // A symbol keeps its capital.
+      starts_next = false;
     }
     line += starts ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
     starts = text.compare(i, 5, "(The ") == 0;

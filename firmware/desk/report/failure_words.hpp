@@ -24,8 +24,8 @@ Problem describe_failure(const app::EvaluationResults& evaluation, const ReportO
 Problem check_given_damping(const app::EvaluationResults& evaluation, const ReportOptions& options,
                             const FrequencyResponse& points);
 
-/// @returns Sentences of the library as the middle of a line: small letters at the start, no full
-/// stops.
+/// @returns Sentences of the library as the middle of a line: each begins with a small letter
+/// unless that is a symbol, semicolons part them, and there is no full stop.
 std::string in_line(const std::string& text);
 
 }  // namespace emax::desk

@@ -134,8 +134,8 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {
-    problem = describe_failure(sequencer.evaluation(), options, imported.names_phase_unit,
-                               imported.doubt);
+    problem = describe_failure(sequencer.evaluation(), options,
+                               imported.names_phase_unit || options.measures(), imported.doubt);
     problem = work_in_band(options, job, progress, std::move(problem), remark);
   }
   return problem;
