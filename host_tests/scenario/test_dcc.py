@@ -7,6 +7,7 @@ version 2.1.0 (https://ptb.de/si/v2.1.0/SI_Format.xsd), whose licence is not our
 """
 
 import json
+import math
 import os
 import pathlib
 import re
@@ -22,7 +23,7 @@ LABELS = {
     "device": "Piezo <A> & \"B\"", "serial": "47\n11", "operator": "J. Doe", "date": "2024-05-01", "certificate-number": "K-17",
     "laboratory": "Lab, Town", "country": "DE", "customer": "Somebody, Elsewhere",
 }
-MORE = {"maker": "M", "model-name": "A 1800", "reference-id": "no. 7", "conditions": "23 \u00b0C", "procedure": "P-4", "note": "as new"}
+MORE = {"place": "laboratory", "issue-date": "2024-05-03", "approved-by": "A. Chief", "maker": "M", "model-name": "A 1800", "reference-id": "no. 7", "conditions": "23 \u00b0C", "procedure": "P-4", "note": "as new"}
 
 
 def options_of(labels: dict) -> list[str]:
@@ -32,7 +33,12 @@ def options_of(labels: dict) -> list[str]:
 class DigitalCertificate(ProgramTest):
     def certificate(self, *arguments):
         result = self.run_program("report", *arguments, *QUICK, "--dcc", "c.xml", "--out", "out")
-        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        missing = [f"--{name}" for name in ["maker", "model-name", "procedure", "place", "issue-date", "approved-by", "reference-id", "conditions"]
+                   if not any(str(argument).startswith(f"--{name}=") for argument in arguments)]
+        is_item = "--model" not in arguments
+        self.assertEqual(result.stderr.decode(), "" if not (missing and is_item) else
+                         f"emax: --certificate-number: ISO/IEC 17025 also asks for {', '.join(missing)}\n")
         self.assert_valid(self.directory / "c.xml")
         return xml.etree.ElementTree.parse(self.directory / "c.xml").getroot()
 
@@ -98,6 +104,14 @@ class DigitalCertificate(ProgramTest):
                 found[name] = (float(real.find(SI + "value").text), None if U is None else float(U.text), real.find(SI + "unit").text)
         return found
 
+    def assert_rounded(self, value: float, U: float, exact_value: float, exact_U: float):
+        """U has two digits, and the value the same decimals: each off by half a unit of U's second digit at most."""
+        unit = 10.0 ** (math.floor(math.log10(exact_U)) - 1)
+        self.assertLessEqual(abs(value - exact_value), 0.501 * unit)
+        self.assertLessEqual(abs(U - exact_U), 0.501 * unit)
+        self.assertAlmostEqual(U / unit, round(U / unit), delta=1e-6)
+        self.assertAlmostEqual(value / unit, round(value / unit), delta=1e-6)
+
     def test_numbers_are_those_of_the_results(self):
         root = self.certificate(*TABLE, *options_of(LABELS))
         results = json.loads((self.directory / "out/results.json").read_text())
@@ -118,10 +132,11 @@ class DigitalCertificate(ProgramTest):
         }
         for name, (value, expanded, unit) in expected.items():
             with self.subTest(name):
-                self.assertAlmostEqual(found[name][0] / value, 1.0, delta=1e-12)
                 self.assertEqual(found[name][1] is None, expanded is None)
-                if expanded is not None:
-                    self.assertAlmostEqual(found[name][1] / expanded, 1.0, delta=1e-12)
+                if expanded is None:
+                    self.assertAlmostEqual(found[name][0] / value, 1.0, delta=1e-12)
+                else:
+                    self.assert_rounded(*found[name][:2], value, expanded)
                 self.assertEqual(found[name][2], unit)
 
     def test_interval_in_the_place_of_U(self):
@@ -145,8 +160,12 @@ class DigitalCertificate(ProgramTest):
                 self.assertIsNone(real.find(SI + "expandedUnc"))
                 interval = real.find(SI + "coverageInterval")
                 parts = [real.find(SI + "value"), *(interval.find(SI + part) for part in ["standardUnc", "intervalMin", "intervalMax"])]
-                for part, number in zip(parts, numbers, strict=True):
-                    self.assertAlmostEqual(float(part.text), number, delta=1e-12 * number)
+                value, u, low, high = (float(part.text) for part in parts)
+                self.assert_rounded(value, u, *numbers[:2])
+                # Outwards, by less than one of u's second digit.
+                unit = 10.0 ** (math.floor(math.log10(numbers[1])) - 1)
+                self.assertTrue(0 <= numbers[2] - low < 1.001 * unit or low == 0.0, (low, numbers[2]))
+                self.assertTrue(0 <= high - numbers[3] < 1.001 * unit, (high, numbers[3]))
                 self.assertEqual(interval.find(SI + "coverageProbability").text, "0.95")
         with_delay = found["Worst rms error in band, with its delay, of sensitivity times limit"]
         self.assertIsNone(with_delay.find(DCC + "description"))
@@ -169,7 +188,85 @@ class DigitalCertificate(ProgramTest):
                 self.assertAlmostEqual(value, float(row[column]), delta=1e-12 * max(1.0, abs(value)))
             if expanded is not None:
                 for U, row in zip(numbers(name, "expandedUncXMLList", "uncertaintyXMLList"), rows, strict=True):
-                    self.assertAlmostEqual(U / float(row[expanded]), 1.0, delta=1e-12)
+                    self.assert_rounded(0.0, U, 0.0, float(row[expanded]))
+
+    def statements(self, root) -> dict:
+        found = {}
+        for statement in root.iter(DCC + "statement"):
+            name, words = (statement.find(f"{DCC}{part}/{DCC}content").text for part in ["name", "declaration"])
+            found.setdefault(name, []).append(words)
+        return found
+
+    def test_warnings_and_quality_of_the_fit(self):
+        """What warns on the page warns here, and --birge widens all U alike."""
+        table = ["--points", DATA / "djb_a1800v.csv"]
+        root = self.certificate(*table, *options_of(LABELS))
+        results = json.loads((self.directory / "out/results.json").read_text())
+        self.assertGreater(results["model"]["chi2"], 50 * results["model"]["dof"])
+        self.assertEqual(len(self.statements(root)["Warning"]), len(results["warnings"]))
+        self.assertIn("chi2/dof is above", self.statements(root)["Warning"][0])
+        plain = self.quantities(root)
+        self.assertAlmostEqual(plain["Chi-square"][0], results["model"]["chi2"], delta=0.0006)
+        birge = plain["Birge ratio"][0]
+        self.assertAlmostEqual(birge, math.sqrt(results["model"]["chi2"] / results["model"]["dof"]), delta=0.0006)
+        root = self.certificate(*table, "--birge", *options_of(LABELS))
+        wide = self.quantities(root)
+        for name in ["Sensitivity", "Natural frequency", "Largest energy of the error of any signal within the limit"]:
+            # Both have two digits; E is nearly linear over so narrow a range.
+            self.assertAlmostEqual(wide[name][1] / plain[name][1] / birge, 1.0, delta=0.1, msg=name)
+        self.assertIn("times the Birge ratio", self.statements(root)["Uncertainty"][0])
+        self.assertIn("Birge ratio", "".join(root.find(f".//{DCC}measurementResults").itertext()))
+
+    def test_numbers_are_short(self):
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        for element in root.iter():
+            if element.tag.startswith(SI) and element.text and "ist" not in element.tag and re.fullmatch(r"[-0-9.e]+", element.text.strip()):
+                digits = re.sub(r"e.*|[-.]", "", element.text.strip()).lstrip("0")
+                self.assertLessEqual(len(digits), 15, element.tag)
+        # k = 2 covers erf(sqrt(2)) of a normal distribution.
+        covered = [element.text for element in root.iter(SI + "coverageProbability")]
+        covered += [element.text for element in root.iter(SI + "coverageProbabilityXMLList")]
+        self.assertEqual(set(covered), {f"{math.erf(math.sqrt(2.0)):.4f}"})
+
+    def test_shared_effects_are_in_U_of_each_point(self):
+        """A table that says crosstalk: 1 mV/(m/s2) of standard uncertainty beside K and a perfect clock."""
+        text = TABLE[1].read_text()
+        (self.directory / "t.csv").write_text(text + "# shared: leak=0.01\n")
+
+        def expanded(path):
+            root = self.certificate("--points", path, "--reference-uncertainty", "0.5", *options_of(LABELS))
+            return [[float(U) for U in one.text.split()] for one in root.iter(SI + "uncertaintyXMLList")]
+
+        plain, shared = expanded(TABLE[1]), expanded(self.directory / "t.csv")
+        # At the lowest frequency K is real: 0.01 of K, so U = 0.02 more in squares. To the second digit of U.
+        self.assertAlmostEqual(shared[0][0], math.hypot(plain[0][0], 0.02), delta=0.06 * shared[0][0])
+        self.assertAlmostEqual(shared[1][0] / plain[1][0], 1.0, delta=0.06)
+        # At the resonance the same turns the phase by 0.01/A.
+        self.assertGreater(max(shared[1]), 0.7)
+
+    def test_computed_from_parameters_is_no_calibration(self):
+        root = self.certificate(*MODEL, *options_of(LABELS | MORE))
+        statements = self.statements(root)
+        self.assertIn("no item was tested", statements["Validity"][0])
+        self.assertTrue(statements["Traceability"][0].startswith("None"))
+        self.assertIsNone(root.find(f".//{DCC}measuringEquipment"))
+        table = self.certificate(*TABLE, *options_of(LABELS | MORE))
+        self.assertIsNotNone(table.find(f".//{DCC}measuringEquipment"))
+        self.assertIn("table, as it was provided", self.statements(table)["Validity"][0])
+
+    def test_who_signs_and_where(self):
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        data = root.find(DCC + "administrativeData")
+        self.assertEqual(data.find(f"{DCC}coreData/{DCC}performanceLocation").text, "other")
+        self.assertIsNone(data.find(f".//{DCC}mainSigner"))
+        self.assertIsNone(data.find(f".//{DCC}issueDate"))
+        self.assertIn("except with the written approval of the issuing laboratory", self.statements(root)["Reproduction"][0])
+        data = self.certificate(*TABLE, *options_of(LABELS | MORE)).find(DCC + "administrativeData")
+        self.assertEqual(data.find(f"{DCC}coreData/{DCC}performanceLocation").text, "laboratory")
+        self.assertEqual(data.find(f"{DCC}coreData/{DCC}issueDate").text, "2024-05-03")
+        signer = [person for person in data.iter(DCC + "respPerson") if person.find(DCC + "mainSigner") is not None]
+        self.assertEqual([person.find(f"{DCC}person/{DCC}name/{DCC}content").text for person in signer], ["A. Chief"])
+        self.refuse(["report", *MODEL, "--dcc", "c.xml", *options_of(LABELS | {"issue-date": "May"})], "--issue-date: ", "YYYY-MM-DD")
 
     def test_a_simulation_says_so(self):
         root = self.certificate(*options_of(LABELS))

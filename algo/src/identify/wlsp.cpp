@@ -624,6 +624,22 @@ void Wlsp::add_shared(double (&covariance)[3][3]) const noexcept {
   covariance[1][1] += f0_u * f0_u;
 }
 
+// Relative changes of 1/K: their real part is one of the amplitude, their imaginary part a turn.
+Complex Wlsp::shared_beside(std::size_t index) const noexcept {
+  const Complex y = inverse_at(index, scaled_);
+  const double clock = response_.shared().clock;
+  Complex change = {2.0 * clock * (y.re - scaled_[0]), clock * y.im};  // By f d(1/K)/df.
+  Complex squares;
+  for (std::size_t k = 0;; ++k) {
+    const Complex relative = change / y;
+    squares = squares + Complex{square(relative.re), square(relative.im)};
+    if (k == kExplained) {
+      return {sqrt(squares.re), sqrt(squares.im)};
+    }
+    change = change_of(explained_by(k), index);
+  }
+}
+
 Complex Wlsp::whiten(std::size_t index, const Complex& value) const noexcept {
   const ComplexCholesky& l = factors_[index];
   const double re = value.re / l.re_re;

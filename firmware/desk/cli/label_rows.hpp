@@ -26,6 +26,9 @@ enum class CertificateLabel : std::size_t {
   kReference,
   kConditions,
   kProcedure,
+  kPlace,
+  kIssueDate,
+  kApprover,
 };
 
 /// In the order of `CertificateLabel`.
@@ -48,6 +51,12 @@ inline constexpr LabelRow kLabelRows[] = {
      "temperature, humidity, mounting and torque"},
     {"procedure", "procedure", "Procedure", "a text",
      "procedure of the laboratory, such as its number"},
+    {"place", "place", "Place of the measurement", "a text",
+     "where it was measured: laboratory, customer, or a place"},
+    {"issue-date", "issue_date", "Date of issue", "YYYY-MM-DD",
+     "day on which a certificate is issued"},
+    {"approved-by", "approved_by", "Approved by", "a name",
+     "who authorises a certificate, beside who measured"},
 };
 inline constexpr std::size_t kLabelRowCount = sizeof kLabelRows / sizeof kLabelRows[0];
 

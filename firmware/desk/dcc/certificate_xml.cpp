@@ -1,16 +1,21 @@
 // The results as a Digital Calibration Certificate.
 #include "desk/dcc/certificate_xml.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
 #include "emax/app/base/version.hpp"
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/base/units.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/label_rows.hpp"
 #include "desk/dcc/xml_writer.hpp"
+#include "desk/files/rounding.hpp"
+#include "desk/page/certificate_part.hpp"
+#include "desk/report/warning_words.hpp"
 
 namespace emax::desk {
 
@@ -23,10 +28,35 @@ using app::kCoverageFactor;
 constexpr const char* kSensitivityUnit = "\\volt\\metre\\tothe{-1}\\second\\tothe{2}";
 constexpr const char* kEnergyUnit = "\\volt\\tothe{2}\\second";
 
+constexpr const char* kCoverageProbability = "0.9545";  // Of a normal distribution within 2 u.
+
+// A decimal number keeps so many digits through a double.
+constexpr int kMostDigits = 15;
+
 std::string number(double value) {
   StringSink sink;
-  app::TextWriter out(sink);
-  out.exact(value);
+  app::TextWriter(sink).general(value, kMostDigits);
+  return sink.text();
+}
+
+// Decimals that leave `expanded` two digits; below 0 they are tens and hundreds.
+int decimals_of_two_digits(double expanded) {
+  return 1 - static_cast<int>(std::floor(std::log10(expanded)));
+}
+
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
+
+// The nearest one with so many decimals.
+std::string number(double value, int decimals) {
+  const double nearest = rounded(value, decimals);
+  if (decimals > kMostDigits) {
+    return number(nearest);
+  }
+  StringSink sink;
+  app::TextWriter(sink).fixed(nearest, std::max(decimals, 0));
   return sink.text();
 }
 
@@ -42,6 +72,13 @@ void add_software(XmlWriter& xml) {
   xml.element("dcc:release", app::kVersion).element("dcc:type", "application").close().close();
 }
 
+// One of the schema's words for where the measurement was made; "other" is no claim.
+std::string location_of(const app::Labels& labels) {
+  const char* const place = label_of(labels, CertificateLabel::kPlace);
+  const std::string words = place == nullptr ? "" : xml_text(place);
+  return words == "laboratory" || words == "customer" ? words : "other";
+}
+
 void add_core_data(XmlWriter& xml, const app::ReportContext& context) {
   const app::Labels& labels = context.labels;
   const std::string date = xml_text(labels.date);
@@ -51,7 +88,11 @@ void add_core_data(XmlWriter& xml, const app::ReportContext& context) {
   xml.element("dcc:usedLangCodeISO639_1", "en").element("dcc:mandatoryLangCodeISO639_1", "en");
   xml.element("dcc:uniqueIdentifier", mark + xml_text(label_of(labels, CertificateLabel::kNumber)));
   xml.element("dcc:beginPerformanceDate", date).element("dcc:endPerformanceDate", date);
-  xml.element("dcc:performanceLocation", "laboratory").close();
+  xml.element("dcc:performanceLocation", location_of(labels));
+  if (const char* const issued = label_of(labels, CertificateLabel::kIssueDate)) {
+    xml.element("dcc:issueDate", xml_text(issued));
+  }
+  xml.close();
 }
 
 void add_item(XmlWriter& xml, const app::Labels& labels) {
@@ -93,26 +134,55 @@ void add_statement(XmlWriter& xml, const char* name, const std::string& words) {
   xml.close();
 }
 
-void add_statements(XmlWriter& xml, const app::ReportContext& context) {
-  const char* const reference = label_of(context.labels, CertificateLabel::kReference);
+// What a reader of the page is warned of, too.
+void add_warnings(XmlWriter& xml, const EvaluationResults& results,
+                  const app::ReportContext& context) {
+  for (const app::Warning warning : app::kWarnings) {
+    if (holds(warning, results, context)) {
+      add_statement(
+          xml, "Warning",
+          xml_text(
+              sentence_of(words_of(warning, results), least_time_s(warning, results)).c_str()));
+    }
+  }
+  if (context.other_criterion != nullptr) {
+    add_statement(xml, "Warning", xml_text(context.other_criterion));
+  }
+}
+
+void add_statements(XmlWriter& xml, const EvaluationResults& results,
+                    const app::ReportContext& context) {
+  const app::Labels& labels = context.labels;
   xml.open("dcc:statements");
   if (is_simulated(context)) {
     add_statement(xml, "Simulation", app::kSimulationBanner);
   }
-  add_statement(xml, "Uncertainty",
-                "Expanded uncertainties are standard uncertainties times the coverage factor k = "
-                "2, which for a normal distribution covers about 95 %.");
-  add_statement(xml, "Validity", "The results apply to the item tested only.");
-  add_statement(xml, "Traceability",
-                reference == nullptr ? "Not stated."
-                                     : "By the reference sensor " + xml_text(reference) + ".");
-  if (context.labels.note != nullptr) {
-    add_statement(xml, "Note", xml_text(context.labels.note));
+  add_warnings(xml, results, context);
+  add_statement(xml, "Uncertainty", uncertainty_statement(results, context));
+  add_statement(xml, "Validity", validity_statement(context));
+  add_statement(xml, "Traceability", xml_text(traceability_statement(context).c_str()));
+  add_statement(xml, "Reproduction", kReproduction);
+  if (const char* const place = label_of(labels, CertificateLabel::kPlace)) {
+    add_statement(xml, "Place of the measurement", xml_text(place));
+  }
+  if (labels.note != nullptr) {
+    add_statement(xml, "Note", xml_text(labels.note));
   }
   xml.close();
 }
 
-void add_administrative_data(XmlWriter& xml, const app::ReportContext& context) {
+void add_person(XmlWriter& xml, const char* name, const char* role, bool signs) {
+  xml.open("dcc:respPerson").open("dcc:person");
+  add_text(xml, "dcc:name", xml_text(name));
+  xml.close().element("dcc:role", role);
+  if (signs) {
+    xml.element("dcc:mainSigner", "true");
+  }
+  xml.close();
+}
+
+void add_administrative_data(XmlWriter& xml, const EvaluationResults& results,
+                             const app::ReportContext& context) {
   const app::Labels& labels = context.labels;
   xml.open("dcc:administrativeData");
   add_software(xml);
@@ -121,12 +191,15 @@ void add_administrative_data(XmlWriter& xml, const app::ReportContext& context) 
   xml.open("dcc:calibrationLaboratory");
   add_contact(xml, "dcc:contact", xml_text(label_of(labels, CertificateLabel::kLaboratory)),
               label_of(labels, CertificateLabel::kCountry));
-  xml.close().open("dcc:respPersons").open("dcc:respPerson").open("dcc:person");
-  add_text(xml, "dcc:name", xml_text(labels.operated_by));
-  xml.close().element("dcc:mainSigner", "true").close().close();
+  xml.close().open("dcc:respPersons");
+  add_person(xml, labels.operated_by, "measured", false);
+  if (const char* const approver = label_of(labels, CertificateLabel::kApprover)) {
+    add_person(xml, approver, "approved", true);
+  }
+  xml.close();
   add_contact(xml, "dcc:customer", xml_text(label_of(labels, CertificateLabel::kCustomer)),
               nullptr);
-  add_statements(xml, context);
+  add_statements(xml, results, context);
   xml.close();
 }
 
@@ -144,32 +217,42 @@ constexpr const char* kInsteadOfU =
     "The coverage interval stands in the place of U, which says too little here: the value is near "
     "one end of what the uncertainties allow.";
 
-// Nothing where the uncertainty is 0 or not known.
-void add_known(XmlWriter& xml, const Known& known) {
-  if (!(known.u > 0.0) || !std::isfinite(known.u)) {
-    return;
-  }
+bool is_known(const Known& known) { return known.u > 0.0 && std::isfinite(known.u); }
+
+// Two digits of U, or of u where an interval stands in its place: outwards.
+void add_known(XmlWriter& xml, const Known& known, int decimals) {
   if (known.is_one_sided) {
-    xml.open("si:coverageInterval").element("si:standardUnc", number(known.u));
-    xml.element("si:intervalMin", number(known.interval.low));
-    xml.element("si:intervalMax", number(known.interval.high));
+    const double half = 0.5 * std::pow(10.0, -decimals);
+    xml.open("si:coverageInterval").element("si:standardUnc", number(known.u, decimals));
+    xml.element("si:intervalMin", number(std::max(known.interval.low - half, 0.0), decimals));
+    xml.element("si:intervalMax", number(known.interval.high + half, decimals));
     xml.element("si:coverageProbability", number(known.probability)).close();
     return;
   }
-  xml.open("si:expandedUnc").element("si:uncertainty", number(kCoverageFactor * known.u));
-  xml.element("si:coverageFactor", "2").element("si:coverageProbability", "0.95");
+  xml.open("si:expandedUnc").element("si:uncertainty", number(kCoverageFactor * known.u, decimals));
+  xml.element("si:coverageFactor", "2").element("si:coverageProbability", kCoverageProbability);
   xml.element("si:distribution", "normal").close();
 }
 
 void add_quantity(XmlWriter& xml, const char* name, double value, const char* unit,
-                  const Known& known = {}) {
+                  const Known& known = {}, const std::string& description = "") {
+  const int decimals =
+      is_known(known)
+          ? decimals_of_two_digits(known.is_one_sided ? known.u : kCoverageFactor * known.u)
+          : 0;
   xml.open("dcc:quantity");
   add_text(xml, "dcc:name", name);
   if (known.is_one_sided) {
     add_text(xml, "dcc:description", kInsteadOfU);
+  } else if (!description.empty()) {
+    add_text(xml, "dcc:description", description);
   }
-  xml.open("si:real").element("si:value", number(value)).element("si:unit", unit);
-  add_known(xml, known);
+  xml.open("si:real");
+  xml.element("si:value", is_known(known) ? number(value, decimals) : number(value));
+  xml.element("si:unit", unit);
+  if (is_known(known)) {
+    add_known(xml, known, decimals);
+  }
   xml.close().close();
 }
 
@@ -179,19 +262,32 @@ void open_result(XmlWriter& xml, const char* name) {
   xml.open("dcc:data");
 }
 
-void add_figure(XmlWriter& xml, const char* name, const EvaluationResults& results,
-                const app::FigureResults& figure) {
+Known known_of_percent(const EvaluationResults& results, const app::EnergyUncertainty& known,
+                       double energy_v2s) {
+  if (!known.exists()) {
+    return {};
+  }
+  return {known.u_percent, energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s),
+          results.interval_percent_of(known.shortest, energy_v2s), results.settings.probability};
+}
+
+// No signal has more, so upwards.
+void add_bound(XmlWriter& xml, const char* name, bool exists, double bound, const char* unit) {
+  constexpr int kDigits = 4;
+  if (exists) {
+    add_quantity(xml, name, rounded_up(bound, kDigits - 1), unit);
+  }
+}
+
+void add_figure(XmlWriter& xml, const char* name, const char* name_of_bound,
+                const EvaluationResults& results, const app::FigureResults& figure) {
   if (!figure.exists()) {
     return;
   }
-  const app::EnergyUncertainty& known = figure.uncertainty;
-  Known percent;
-  if (known.exists()) {
-    percent = {known.u_percent, results.is_one_sided(figure),
-               results.interval_percent_of(known.shortest, figure.energy_v2s),
-               results.settings.probability};
-  }
-  add_quantity(xml, name, results.percent_of(figure.energy_v2s), "\\percent", percent);
+  add_quantity(xml, name, results.percent_of(figure.energy_v2s), "\\percent",
+               known_of_percent(results, figure.uncertainty, figure.energy_v2s));
+  add_bound(xml, name_of_bound, figure.has_bound, results.percent_of(figure.bound_v2s),
+            "\\percent");
 }
 
 // As in the report: an interval, where U says too little.
@@ -217,18 +313,66 @@ const char* name_of_energy(Criterion criterion) {
   return "Largest energy of the in-band error of any signal within the limit";
 }
 
+// Of the criterion, as a part of what it may be at most.
+void add_papers_figure(XmlWriter& xml, const EvaluationResults& results) {
+  const double energy = results.energy_v2s();
+  if (energy < 0.0 || results.settings.criterion != Criterion::kIntegralSquareError) {
+    return;
+  }
+  add_quantity(xml, "Worst rms error against the reference filter, of sensitivity times limit",
+               results.percent_of(energy), "\\percent",
+               is_known(known_of_energy(results))
+                   ? known_of_percent(results, results.uncertainty, energy)
+                   : Known{});
+}
+
+// The symmetric one, with the digits of U; nothing where an interval stands in the place of U.
+std::string interval_of_energy(const EvaluationResults& results) {
+  const Known known = known_of_energy(results);
+  if (!is_known(known) || known.is_one_sided) {
+    return "";
+  }
+  const int decimals = decimals_of_two_digits(kCoverageFactor * known.u);
+  const CoverageInterval& interval = results.uncertainty.symmetric;
+  return "Coverage interval of " + number(100.0 * results.settings.probability) +
+         " %: " + number(interval.low, decimals) + " to " + number(interval.high, decimals) +
+         " V^2 s.";
+}
+
+const char* words_on_criterion(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::kIntegralSquareError:
+      return "Criterion: integral-square error, the energy of the sensor's output less that of the "
+             "reference filter.";
+    case Criterion::kEnergyDifference:
+      return "Criterion: energy difference, the energy of the sensor's output less the energy of "
+             "the filter's.";
+    case Criterion::kInBandError:
+      break;
+  }
+  return "Criterion: in-band error, the energy of the sensor's output less G x, behind the filter.";
+}
+
 void add_errors(XmlWriter& xml, const EvaluationResults& results) {
   open_result(xml, "Largest errors");
+  add_text(xml, "dcc:text", words_on_criterion(results.settings.criterion));
+  add_text(xml, "dcc:text", gain_statement(results));
   const bool is_given = results.settings.delay_choice == app::DelayChoice::kGiven;
-  add_figure(xml,
-             is_given
-                 ? "Worst rms error in band, the given delay taken out, of sensitivity times limit"
-                 : "Worst rms error in band, constant delay taken out, of sensitivity times limit",
-             results, results.matched);
-  add_figure(xml, "Worst rms error in band, with its delay, of sensitivity times limit", results,
-             results.band);
+  add_figure(
+      xml,
+      is_given ? "Worst rms error in band, the given delay taken out, of sensitivity times limit"
+               : "Worst rms error in band, constant delay taken out, of sensitivity times limit",
+      "Proven at the estimates for that error: no signal has more", results, results.matched);
+  if (results.matched.exists()) {
+    add_quantity(xml, "Delay taken out", results.matched.delay_s, "\\second");
+  }
+  add_figure(xml, "Worst rms error in band, with its delay, of sensitivity times limit",
+             "Proven at the estimates with the delay: no signal has more", results, results.band);
+  add_papers_figure(xml, results);
   add_quantity(xml, name_of_energy(results.settings.criterion), results.energy_v2s(), kEnergyUnit,
-               known_of_energy(results));
+               known_of_energy(results), interval_of_energy(results));
+  add_bound(xml, "Proven at the estimates for that energy: no signal has more", results.has_bound,
+            results.bound_v2s, kEnergyUnit);
   add_quantity(xml, "Limit of the signals", results.limit_mps2, "\\metre\\second\\tothe{-2}");
   add_quantity(xml, "Length of the signals", results.settings.duration_s, "\\second");
   add_quantity(xml, "Order of the reference filter, Butterworth",
@@ -237,10 +381,41 @@ void add_errors(XmlWriter& xml, const EvaluationResults& results) {
   xml.close().close();
 }
 
+// How well the points and the model agree; --birge widens all U alike.
+void add_quality(XmlWriter& xml, const EvaluationResults& results) {
+  if (results.source != app::Source::kPoints) {
+    return;
+  }
+  const WlspFit& fit = results.fit.result();
+  open_result(xml, "Quality of the fit");
+  if (results.trial_scale() > 1.0) {
+    add_text(xml, "dcc:text",
+             "All uncertainties of the parameters and of the errors are those stated times the "
+             "Birge ratio.");
+  }
+  constexpr int kDecimals = 3;
+  const auto add = [&xml](const char* name, double value) {
+    add_quantity(xml, name, rounded(value, kDecimals), "\\one");
+  };
+  add("Chi-square", fit.chi2);
+  add("Degrees of freedom", static_cast<double>(fit.dof));
+  add("Birge ratio", fit.birge_ratio);
+  if (!results.is_damping_open()) {
+    const auto correlation = [&results](std::size_t i, std::size_t j) {
+      const double scale = std::sqrt(results.covariance(i, i) * results.covariance(j, j));
+      return scale > 0.0 ? results.covariance(i, j) / scale : 0.0;
+    };
+    add("Correlation of sensitivity and natural frequency", correlation(0, 1));
+    add("Correlation of sensitivity and damping ratio", correlation(0, 2));
+    add("Correlation of natural frequency and damping ratio", correlation(1, 2));
+  }
+  xml.close().close();
+}
+
 void add_parameters(XmlWriter& xml, const EvaluationResults& results) {
   const Accelerometer& device = results.device.estimate;
   const auto known = [&results](std::size_t i) {
-    return Known{std::sqrt(results.covariance(i, i)), false, {}, 0.0};
+    return Known{results.trial_scale() * std::sqrt(results.covariance(i, i)), false, {}, 0.0};
   };
   open_result(xml, "Parameters of the model of second order");
   add_quantity(xml, "Sensitivity", device.sensitivity, kSensitivityUnit, known(0));
@@ -263,6 +438,10 @@ void append_number(std::string& list, double value) {
   list += (list.empty() ? "" : " ") + number(value);
 }
 
+void append_expanded(std::string& list, double expanded) {
+  list += (list.empty() ? "" : " ") + number(expanded, decimals_of_two_digits(expanded));
+}
+
 void add_column(XmlWriter& xml, const Column& column) {
   xml.open("dcc:quantity");
   add_text(xml, "dcc:name", column.name);
@@ -271,7 +450,7 @@ void add_column(XmlWriter& xml, const Column& column) {
   if (!column.uncertainties.empty()) {
     xml.open("si:expandedUncXMLList").element("si:uncertaintyXMLList", column.uncertainties);
     xml.element("si:coverageFactorXMLList", "2");
-    xml.element("si:coverageProbabilityXMLList", "0.95").close();
+    xml.element("si:coverageProbabilityXMLList", kCoverageProbability).close();
   }
   xml.close().close();
 }
@@ -287,13 +466,16 @@ void add_response(XmlWriter& xml, const EvaluationResults& results) {
   bool has_phases = true;
   for (std::size_t i = 0; i < response.size(); ++i) {
     const ResponsePoint& point = response.points()[i];
-    const double u = std::hypot(point.u_amplitude, response.common()[i] * point.amplitude);
+    const Complex beside = results.fit.shared_beside(i);
+    const double u = std::hypot(point.u_amplitude, response.common()[i] * point.amplitude,
+                                beside.re * point.amplitude);
+    const double u_phase_deg = kDegreesPerRadian * std::hypot(point.u_phase_rad, beside.im);
     append_number(frequency.values, point.frequency_hz);
     append_number(amplitude.values, point.amplitude);
-    append_number(amplitude.uncertainties, kCoverageFactor * u);
+    append_expanded(amplitude.uncertainties, kCoverageFactor * u);
     has_phases = has_phases && is_phase_known(point);
     append_number(phase.values, kDegreesPerRadian * point.phase_rad);
-    append_number(phase.uncertainties, kCoverageFactor * kDegreesPerRadian * point.u_phase_rad);
+    append_expanded(phase.uncertainties, kCoverageFactor * u_phase_deg);
   }
   open_result(xml, "Frequency response");
   xml.open("dcc:list");
@@ -323,8 +505,10 @@ void add_methods(XmlWriter& xml, const app::ReportContext& context) {
   xml.close().close();
 }
 
-void add_measuring(XmlWriter& xml, const app::Labels& labels) {
-  const char* const reference = label_of(labels, CertificateLabel::kReference);
+void add_measuring(XmlWriter& xml, const app::ReportContext& context) {
+  const app::Labels& labels = context.labels;
+  const char* const reference =
+      is_of_item(context) ? label_of(labels, CertificateLabel::kReference) : nullptr;
   const char* const conditions = label_of(labels, CertificateLabel::kConditions);
   if (reference != nullptr) {
     xml.open("dcc:measuringEquipments").open("dcc:measuringEquipment");
@@ -394,6 +578,11 @@ Problem check_certificate_labels(const app::Labels& labels) {
     return bad_input("--date: \"" + printable(labels.date) +
                      "\" given; expected YYYY-MM-DD with --dcc");
   }
+  const char* const issued = label_of(labels, CertificateLabel::kIssueDate);
+  if (issued != nullptr && !is_date(xml_text(issued))) {
+    return bad_input("--issue-date: \"" + printable(issued) +
+                     "\" given; expected YYYY-MM-DD with --dcc");
+  }
   const char* const country = label_of(labels, CertificateLabel::kCountry);
   return has_form(xml_text(country), "AA")
              ? Problem{}
@@ -408,14 +597,15 @@ std::string certificate_xml(const EvaluationResults& results, const app::ReportC
            "  xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n"
            "  xsi:schemaLocation=\"https://ptb.de/dcc https://ptb.de/dcc/v3.2.1/dcc.xsd\"\n"
            "  schemaVersion=\"3.2.1\"");
-  add_administrative_data(xml, context);
+  add_administrative_data(xml, results, context);
   xml.open("dcc:measurementResults").open("dcc:measurementResult");
   add_text(xml, "dcc:name", "Largest error of an accelerometer");
   add_methods(xml, context);
-  add_measuring(xml, context.labels);
+  add_measuring(xml, context);
   xml.open("dcc:results");
   add_errors(xml, results);
   add_parameters(xml, results);
+  add_quality(xml, results);
   add_response(xml, results);
   xml.close().close().close().close();
   return xml.text();

@@ -370,10 +370,10 @@ std::string name_of(const app::Labels& labels) {
 std::string opening(const app::ReportContext& context) {
   const bool is_marked = is_simulated(context);
   const char* const number = certificate_number(context.labels);
-  const std::string about =
-      number == nullptr
-          ? std::string("The largest error that this accelerometer can make")
-          : "Calibration certificate " + quoted(number) + ": the largest error that it can make";
+  const char* const kind = is_of_item(context) ? "Calibration certificate " : "Computation ";
+  const std::string about = number == nullptr
+                                ? std::string("The largest error that this accelerometer can make")
+                                : kind + quoted(number) + ": the largest error that it can make";
   return page_opening(name_of(context.labels),
                       is_marked ? " (simulation) - emax report" : " - emax report", about,
                       is_marked ? app::kSimulationBanner : "", running_words(context));
@@ -413,9 +413,8 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
   if (warnings.empty() && context.other_criterion == nullptr) {
     html += "<p class=\"note\">No warnings.</p>\n";
   }
-  body += certificate_of(context);
   append_budget(body, markup.budget());
-  append_end(body, context);
+  body += certificate_of(results, context);
   if (pictures.empty()) {
     html += std::string("<p class=\"note\">No pictures: gnuplot was missing when this page was ") +
             "made, or has failed. Running gnuplot " + kPictureScript +

@@ -1,5 +1,4 @@
 // `emax report`.
-#include "desk/report/report_command.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -26,6 +25,8 @@
 #include "desk/files/report_files.hpp"
 #include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
+#include "desk/page/certificate_part.hpp"
+#include "desk/page/certificate_part.hpp"
 #include "desk/report/bench_job.hpp"
 #include "desk/report/damping_words.hpp"
 #include "desk/report/failure_words.hpp"
@@ -268,6 +269,13 @@ Problem remark_on_table(const ReportOptions& options, const ImportedPoints& impo
           doubt.empty() ? "" : name_of_input(options.points_path) + ": " + in_line(doubt)};
 }
 
+// A certificate may name less than ISO/IEC 17025 asks for, but not unnoticed.
+Problem remark_on_labels(const app::ReportContext& context) {
+  const std::string missing = labels_not_stated(context);
+  return {ExitStatus::kDone,
+          missing.empty() ? "" : "--certificate-number: ISO/IEC 17025 also asks for " + missing};
+}
+
 // Before the long work: the labels of a digital certificate, and whether there is room for it.
 Problem open_digital(const ReportOptions& options, const std::vector<app::NamedLabel>& more,
                      SingleFile& file) {
@@ -368,7 +376,8 @@ Problem run_report(Span<const std::string_view> arguments) {
     remark = bench.unstruck();
   }
   const Problem of_table = remark_on_table(options, imported);
-  return problem ? problem : both(of_table, both(criterion_changed, remark));
+  return problem ? problem
+                 : both(of_table, both(both(criterion_changed, remark), remark_on_labels(context)));
 }
 
 std::string help_on_report() {

@@ -939,6 +939,61 @@ TEST(Wlsp, SharedEffectsAreCarriedToTheParameters) {
   }
 }
 
+// What each effect, made as large as its uncertainty, does to amplitude and phase of a point.
+TEST(Wlsp, SharedBesideIsWhatTheEffectsChange) {
+  static constexpr double kU = 1e-6;  // So small that the second order is 1e-6 of it, too.
+  using Value = std::complex<double>;
+  const SharedCase cases[] = {
+      {"clock",
+       {0, kU, 0, 0, 0, 0, 0, 0},
+       [](Value, double f, double) {
+         const ResponsePoint faster = exact_point(kDevice, f * (1.0 + kU), 1e-4, 1e-4);
+         return std::polar(faster.amplitude, faster.phase_rad);
+       }},
+      {"leak", {0, 0, 0, 0, 0, kU, 0, 0}, [](Value k, double, double) { return k + kU; }},
+      {"leak back",
+       {0, 0, 0, 0, 0, 0, kU, 0},
+       [](Value k, double, double) { return 1.0 / (1.0 / k + kU); }},
+  };
+  FrequencyResponse response;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_EQ(response.add(exact_point(kDevice, 200.0 * (i + 1), 1e-4, 1e-4)), Status::kOk);
+  }
+  static Wlsp fit;
+  double squares[30] = {};
+  for (const SharedCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    ASSERT_EQ(response.set_shared(one.shared), Status::kOk);
+    ASSERT_EQ(fit.fit(response), Status::kOk);
+    for (std::size_t i = 0; i < 30; ++i) {
+      const ResponsePoint& point = response.points()[i];
+      const Value k = std::polar(point.amplitude, point.phase_rad);
+      const Value changed = one.changed(k, point.frequency_hz, 0.0) / k;
+      const emax::Complex beside = fit.shared_beside(i);
+      EXPECT_NEAR(beside.re, std::fabs(std::abs(changed) - 1.0), 1e-5 * kU);
+      EXPECT_NEAR(beside.im, std::fabs(std::arg(changed)), 1e-5 * kU);
+      squares[i] += beside.re * beside.re;
+    }
+  }
+  // All at once, with the linearity: (A/A_max)^2 of it.
+  ASSERT_EQ(response.set_shared({0, kU, 0, 0, 0, kU, kU, kU}), Status::kOk);
+  ASSERT_EQ(fit.fit(response), Status::kOk);
+  double largest = 0.0;
+  for (const ResponsePoint& point : response.points()) {
+    largest = std::max(largest, point.amplitude);
+  }
+  for (std::size_t i = 0; i < 30; ++i) {
+    const double share = response.points()[i].amplitude / largest;
+    EXPECT_NEAR(fit.shared_beside(i).re, std::sqrt(squares[i] + kU * kU * std::pow(share, 4)),
+                1e-9 * kU);
+  }
+  // Drift, images and skew are in the points' own uncertainties.
+  ASSERT_EQ(response.set_shared({kU, 0, kU, 10.0, kU, 0, 0, 0}), Status::kOk);
+  ASSERT_EQ(fit.fit(response), Status::kOk);
+  EXPECT_EQ(fit.shared_beside(29).re, 0.0);
+  EXPECT_EQ(fit.shared_beside(29).im, 0.0);
+}
+
 // 30 points of the device, K changed by the function; with a common part of 0.25 % on request.
 FrequencyResponse changed_points(std::complex<double> (*changed)(std::complex<double>, double),
                                  bool has_common) {

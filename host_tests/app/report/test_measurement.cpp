@@ -160,6 +160,37 @@ TEST(Measurement, Report) {
   EXPECT_FALSE(says(report, "FAULT"));
 }
 
+// Crosstalk of 0.5 % and a clock to 1000 ppm, as the fit takes them, are in U of each point. The
+// expected parts are by hand: crosstalk u = 0.25 % of either channel's voltage, so 0.0025 g/A of K
+// and 0.0025 A/g of 1/K for the gain g = 10/1 * 0.1 of reference over device; the clock moves A by
+// u dlnA/dlnf.
+TEST(Measurement, BudgetHoldsCrosstalkAndClock) {
+  SweepSettings settings = emax::app::default_sweep_settings();
+  const auto expanded_at = [](const SweepSettings& wanted, double frequency_hz,
+                              std::size_t column) {
+    const FinishedRun run(BenchSettings(), wanted);
+    for (const std::vector<double>& row : budget_of(report_of(run))) {
+      if (row[0] == frequency_hz) {
+        return row[column];
+      }
+    }
+    return 0.0;
+  };
+  constexpr std::size_t kU = 8;
+  constexpr std::size_t kUOfPhase = 9;
+  const double plain = expanded_at(settings, 30.0, kU);
+  settings.crosstalk_expanded_percent = 0.5;
+  // At 30 Hz the device is real, K = 1.036 and g = 1: both parts are 0.5 % there.
+  EXPECT_NEAR(expanded_at(settings, 30.0, kU), std::sqrt(plain * plain + 0.5 * 0.5 * 2.0), 0.002);
+  // At 4 kHz K lags by a right angle nearly: 0.5 % (1.655 and 1/1.655) of a radian, and no more.
+  const double turned = 0.5e-2 * std::hypot(1.655, 1.0 / 1.655) / kDegree;
+  EXPECT_NEAR(expanded_at(settings, 4000.0, kUOfPhase), turned, 0.01 * turned);
+  settings.crosstalk_expanded_percent = 0.0;
+  settings.clock_expanded_ppm = 1000.0;
+  // dphi/dlnf at the resonance is -1/beta: 1e-3/0.3182 rad.
+  EXPECT_NEAR(expanded_at(settings, 4000.0, kUOfPhase), 1e-3 / 0.3182 / kDegree, 0.005);
+}
+
 TEST(Measurement, EstimatesAgainstTruth) {
   const std::string report = report_of(good_run());
   const std::size_t at = report.find("the estimates are off by");

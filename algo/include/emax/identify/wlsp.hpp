@@ -117,6 +117,13 @@ class Wlsp {
   /// and of those sizes, is chi2.
   Complex normalised_residual(std::size_t index) const noexcept;
 
+  /// What of the shared effects the points' own uncertainties leave out: clock, leak and linearity.
+  ///
+  /// @param[in] index As above, after a fit that has filled in its numbers.
+  /// @returns Standard uncertainties by them at that point: of the amplitude, relative (re), and of
+  /// the phase in rad (im).
+  Complex shared_beside(std::size_t index) const noexcept;
+
   /// @returns The chi-square of any other model in the same measure: against the same points, with
   /// the same factors and the same common part.
   double chi_square_of(const Accelerometer& model) const noexcept;

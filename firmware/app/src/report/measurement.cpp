@@ -23,11 +23,7 @@ constexpr double kReached = 0.9;  // Of the level.
   return out.fixed(kPercent * share, 4);
 }
 
-/// The standard uncertainty of the amplitude with the common part.
-double total_u(const SweepPoint& point, const CommonBudget& common) noexcept {
-  const double shared = common.total * point.point.amplitude;
-  return sqrt(point.point.u_amplitude * point.point.u_amplitude + shared * shared);
-}
+[[gnu::noinline]] double length(double a, double b) noexcept { return sqrt(a * a + b * b); }
 
 /// Words below a label, in as many lines as they need.
 void wrap(ReportWriter& out, const char* words) noexcept {
@@ -88,23 +84,20 @@ void write_settings(const Measurement& measurement, ReportWriter& out) noexcept 
   out.text(" ms, each fitted by a sine").line();
 }
 
-// What certificates state of clock and channels, where they state anything.
-void write_stated(const SweepSettings& settings, ReportWriter& out) noexcept {
-  struct Stated {
-    const char* label;
-    double expanded;
-    const char* unit;
-  };
-  const Stated all[] = {
-      {"Clock", settings.clock_expanded_ppm, " ppm"},
-      {"Crosstalk", settings.crosstalk_expanded_percent, " %"},
-      {"Linearity", settings.linearity_expanded_percent, " %"},
-  };
-  for (const Stated& stated : all) {
-    if (stated.expanded > 0.0) {
-      out.label(stated.label).text("U = ").general(stated.expanded, 4).text(stated.unit).line();
-    }
+/// "U = 0.5 us", or that none was stated.
+void write_expanded(double expanded, const char* unit, ReportWriter& out) noexcept {
+  if (expanded > 0.0) {
+    out.text("U = ").general(expanded, 4).text(unit);
+  } else {
+    out.text("U not stated: 0");
   }
+}
+
+void write_stated(const char* label, double expanded, const char* unit,
+                  ReportWriter& out) noexcept {
+  out.label(label);
+  write_expanded(expanded, unit, out);
+  out.line();
 }
 
 void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
@@ -127,12 +120,12 @@ void write_chain(const SweepSettings& settings, ReportWriter& out) noexcept {
   out.label("Mounting").text("U = ").general(settings.mounting_expanded_percent, 4);
   out.text(" %, with transverse motion and temperature").line();
   out.label("Skew").text("device sampled ").general(kMicro * settings.skew_s, 6);
-  out.text(" us after the reference");
-  if (settings.skew_expanded_s > 0.0) {
-    out.text(", U = ").general(kMicro * settings.skew_expanded_s, 4).text(" us");
-  }
-  out.text(", taken out").line();
-  write_stated(settings, out);
+  out.text(" us after the reference, taken out, ");
+  write_expanded(kMicro * settings.skew_expanded_s, " us", out);
+  out.line();
+  write_stated("Clock", settings.clock_expanded_ppm, " ppm", out);
+  write_stated("Crosstalk", settings.crosstalk_expanded_percent, " %", out);
+  write_stated("Linearity", settings.linearity_expanded_percent, " %", out);
 }
 
 void write_silence(const SweepResults& sweep, ReportWriter& out) noexcept {
@@ -239,8 +232,9 @@ void write_budget_head(const char* const Column::*words, ReportWriter& out) noex
   out.line();
 }
 
-void write_budget_row(const SweepPoint& point, const CommonBudget& common, int decimals,
-                      ReportWriter& out) noexcept {
+/// @param[in] beside Standard uncertainties that the point's own leave out, as of shared_beside().
+void write_budget_row(const SweepPoint& point, const CommonBudget& common, Complex beside,
+                      int decimals, ReportWriter& out) noexcept {
   const ResponsePoint& response = point.point;
   const PointBudget& budget = point.budget;
   out.part(ReportPart::kLine);
@@ -256,12 +250,15 @@ void write_budget_row(const SweepPoint& point, const CommonBudget& common, int d
   percent(out.cell(10), budget.quantisation);
   percent(out.cell(8), budget.hum);
   percent(out.cell(12), budget.distortion);
-  percent(out.cell(9), budget.shared);
-  percent(out.cell(9), kCoverageFactor * total_u(point, common) / response.amplitude);
-  out.cell(11).fixed(kCoverageFactor * kDegreesPerRadian * response.u_phase_rad, 4).line();
+  percent(out.cell(9), length(budget.shared, beside.re));
+  const double own = length(response.u_amplitude / response.amplitude, beside.re);
+  percent(out.cell(9), kCoverageFactor * length(own, common.total));
+  out.cell(11)
+      .fixed(kCoverageFactor * kDegreesPerRadian * length(response.u_phase_rad, beside.im), 4)
+      .line();
 }
 
-void write_budget(const SweepResults& sweep, ReportWriter& out) noexcept {
+void write_budget(const SweepResults& sweep, const Wlsp* fit, ReportWriter& out) noexcept {
   const Span<const SweepPoint> points = sweep.points();
   if (points.empty()) {
     return;
@@ -271,20 +268,28 @@ void write_budget(const SweepResults& sweep, ReportWriter& out) noexcept {
           "\n  Uncertainty budget in the manner of ISO 16063-21: standard uncertainties of each "
           "point by\n"
           "  itself, then the expanded ones (k = 2), U(A) with what is common to all points.\n"
-          "  Noise: scatter of the repeats. Distortion: harmonics. Shared: clock, drift, "
-          "crosstalk\n"
-          "  and linearity.\n\n");
+          "  Noise: pooled over all points, with ")
+      .integer(sweep.noise.dof)
+      .text(
+          " degrees of freedom, or a point's own if that is larger.\n"
+          "  Distortion: harmonics. Shared: drift, the drive's steps")
+      .text(fit != nullptr ? ", clock, crosstalk, linearity.\n"
+                           : "; no clock, crosstalk, linearity.\n")
+      .text(
+          "  ADC step, distortion and drift are rectangular, the rest is normal: halves of the U "
+          "stated.\n\n");
   out.part(ReportPart::kTable);
   write_budget_head(&Column::name, out);
   write_budget_head(&Column::unit, out);
-  double least_u = total_u(points[0], sweep.common);
+  double least_u = points[0].point.amplitude;
   for (const SweepPoint& point : points) {
-    const double u = total_u(point, sweep.common);
+    const double u = length(point.point.u_amplitude, sweep.common.total * point.point.amplitude);
     least_u = u < least_u ? u : least_u;
   }
   const int decimals = decimals_for(least_u);
-  for (const SweepPoint& point : points) {
-    write_budget_row(point, sweep.common, decimals, out);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    write_budget_row(points[i], sweep.common, fit != nullptr ? fit->shared_beside(i) : Complex{},
+                     decimals, out);
   }
 }
 
@@ -369,7 +374,8 @@ const char* name_of_fault(Status status) noexcept {
   return "failed measurement";
 }
 
-void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept {
+void write_measurement_section(const Measurement& measurement, const Wlsp* fit,
+                               ReportWriter& out) noexcept {
   const SweepResults& sweep = measurement.sweep;
   out.heading(ReportSection::kMeasurement,
               "MEASUREMENT (stepped sine, back to back with the reference sensor)");
@@ -387,7 +393,7 @@ void write_measurement_section(const Measurement& measurement, ReportWriter& out
   }
   write_flagged(sweep, out);
   write_common(sweep, out);
-  write_budget(sweep, out);
+  write_budget(sweep, fit, out);
 }
 
 void write_measurement(const ReportContext& context, const EvaluationResults* refused,
@@ -397,7 +403,7 @@ void write_measurement(const ReportContext& context, const EvaluationResults* re
   writer.part(ReportPart::kWarning)
       .text("NOT COMPLETE: a fault has ended the work, so there is no maximum energy.\n");
   write_fault(context.measurement->sweep, refused, writer);
-  write_measurement_section(*context.measurement, writer);
+  write_measurement_section(*context.measurement, nullptr, writer);
 }
 
 }  // namespace emax::app

@@ -182,6 +182,7 @@ struct Estimate {
   double value;
   double u;
   double u_by_draws;
+  double expanded;
   bool is_held;
 };
 
@@ -200,11 +201,12 @@ void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
   out.cell(15).fixed(estimate.value, decimals);
   out.cell(15).fixed(estimate.u, decimals);
   out.cell(15).fixed(estimate.u_by_draws, decimals);
-  out.cell(15).fixed(kCoverageFactor * estimate.u, decimals);
+  out.cell(15).fixed(estimate.expanded, decimals);
   out.cell(0).text("  ").text(estimate.unit).line();
 }
 
 void write_estimates(const EvaluationResults& results, ReportWriter& out) noexcept {
+  const double coverage = kCoverageFactor * results.trial_scale();
   const WlspDrawsResult& draws = results.fit_draws;
   out.part(ReportPart::kTable);
   out.part(ReportPart::kHead);
@@ -215,17 +217,19 @@ void write_estimates(const EvaluationResults& results, ReportWriter& out) noexce
   out.cell(15).text("U (k = 2)");
   out.cell(0).text("  unit").line();
   for (std::size_t i = 0; i < kWlspParameters; ++i) {
+    const double u = sqrt(results.covariance(i, i));
     const Estimate estimate = {kParameterNames[i],
                                kParameterUnits[i],
                                estimate_of(results.fit.result().model, i),
-                               sqrt(results.covariance(i, i)),
+                               u,
                                sqrt(draws.covariance[i][i]),
+                               coverage * u,
                                i == kDamping && results.fit.result().is_damping_held};
     write_estimate(estimate, out);
     if (i == 0 && out.in_g()) {
       constexpr double kG = kStandardGravity_mps2;
       write_estimate({estimate.name, "V/g", kG * estimate.value, kG * estimate.u,
-                      kG * estimate.u_by_draws, false},
+                      kG * estimate.u_by_draws, kG * estimate.expanded, false},
                      out);
     }
   }
@@ -237,6 +241,9 @@ void write_estimates(const EvaluationResults& results, ReportWriter& out) noexce
   }
   if (results.fit.response().has_common()) {
     out.text(",\n  both with the part that is common to all points");
+  }
+  if (results.trial_scale() > 1.0) {
+    out.text("; U is times the Birge ratio");
   }
   out.line();
 }
@@ -260,6 +267,8 @@ void write_truth(const EvaluationResults& results, const Accelerometer& truth,
 
 void write_common_part(const Wlsp& fit, ReportWriter& out) noexcept {
   if (!fit.response().has_common()) {
+    out.label("Common part").text("not stated: if the uncertainties hold one, u(S) is too small");
+    out.line();
     return;
   }
   out.label("Common part").fixed(kPercent * fit.response().common()[0], 4);
@@ -654,6 +663,7 @@ void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out)
         "  then too small by about the Birge ratio of ");
     out.general(fit.birge_ratio, 3).text(".\n");
     out.text(
+        "  Do not trust the estimates to that, either: other weights would move them by as much.\n"
         "  Check: the points named below (multiples of 50 or 60 Hz: hum), resonances of mounting "
         "and\n"
         "  cable, crosstalk, a delay between the channels (a phase that grows with frequency), an "
@@ -697,7 +707,7 @@ void write_report(const EvaluationResults& results, const ReportContext& context
   write_figures(results, context, writer);
   write_input(results, context, writer);
   if (context.measurement != nullptr) {
-    write_measurement_section(*context.measurement, writer);
+    write_measurement_section(*context.measurement, &results.fit, writer);
   }
   if (results.source == Source::kPoints) {
     write_fit(results, context, writer);

@@ -206,9 +206,9 @@ void write_known(const EvaluationResults& results, const EnergyUncertainty& know
                  double energy_v2s, ReportWriter& out) noexcept {
   const double probability = results.settings.probability;
   const bool has_expanded = !(energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s));
-  out.label(has_expanded ? "u(E); U (k = 2)" : "u(E)").scientific(known.u_v2s, 2);
+  out.label(has_expanded ? "u(E); U (k = 2)" : "u(E)").scientific(known.u_v2s, 1);
   if (has_expanded) {
-    out.text("; ").scientific(kCoverageFactor * known.u_v2s, 2);
+    out.text("; ").scientific(kCoverageFactor * known.u_v2s, 1);
   }
   out.text(" V^2 s").line();
   if (has_expanded) {
@@ -359,6 +359,9 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
         "  The paper's figure also holds the filter's delay and what the filter keeps out: "
         "compare\n"
         "  it with that of an ideal sensor.\n");
+    if (results.settings.gain_mode == GainMode::kAuto && results.uncertainty.exists()) {
+      out.text("  U in band leaves out an error of S, as G follows S; the paper's U holds it.\n");
+    }
   } else if (results.settings.criterion == Criterion::kEnergyDifference) {
     out.text(
         "  The energy difference is no error, but the sensor's energy less that of the filter.\n");

@@ -79,6 +79,9 @@ void write_cause(const char* start, const char* cause, ReportWriter& out) noexce
 void write_cut_range(const EvaluationResults& results, ReportWriter& out) noexcept;
 
 /// The section on the measurement with its budget.
-void write_measurement_section(const Measurement& measurement, ReportWriter& out) noexcept;
+///
+/// @param[in] fit Of these points; null if there is none.
+void write_measurement_section(const Measurement& measurement, const Wlsp* fit,
+                               ReportWriter& out) noexcept;
 
 }  // namespace emax::app
