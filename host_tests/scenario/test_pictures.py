@@ -197,7 +197,7 @@ class Pictures(PictureTest, ProgramTest):
         self.assertEqual(self.listed(), sorted([*pictures, "frequency_response.csv", *WITHOUT_PICTURES]))
         units = {
             "frequency_response": ["amplitude in V/(m/s²)", "phase in °", "frequency in Hz"],
-            "histogram": ["E in 10⁻³ V² s", "trials per bin", "95 % coverage interval", "E at the estimates"],
+            "histogram": ["E in 10⁻³ V² s", "trials per bin", "95 % of the trials over the box", "E at the estimates"],
             "impulse_response": ["response in 10³ V/(m/s)", "time in ms", "k = ka − kf", "settled to 5 %"],
             "signal": ["x in m/s²", "error y in V", "time in ms"],
             "trend": ["E in 10⁻³ V² s", "length T of the signal in ms", "proven: no signal has more"],

@@ -12,6 +12,19 @@ constexpr char kExpectedUncertainty[] =
 
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
+// Of what stands behind a name, without the bracket that the name has opened.
+std::string quoted_unit(const std::string& spelling) {
+  const std::size_t end = spelling.find_last_not_of(" )]}");
+  const bool is_open = spelling.find_first_of("([{") != std::string::npos;
+  return quoted(is_open || end == std::string::npos ? spelling : spelling.substr(0, end + 1));
+}
+
+// The symbol of the GUM for a standard uncertainty: "u(A)", where an expanded one is "U(A)".
+bool is_standard_symbol(const std::string& name) noexcept {
+  const std::size_t next = name.find_first_not_of(' ', 1);
+  return name.size() > 1 && name[0] == 'u' && next != std::string::npos && name[next] == '(';
+}
+
 class ConversionSetter final {
  public:
   ConversionSetter(const FoundTable& table, const ImportOptions& options, Conversions& by)
@@ -69,8 +82,8 @@ class ConversionSetter final {
 
   ImportError unknown_unit(const Conversion& conversion, Quantity quantity) const {
     return error_at(table_.header_line + 1,
-                    "the unit " + quoted(table_.columns[conversion.column].unit_spelling) + " of " +
-                        quoted(conversion.name) + " is not known",
+                    "the unit " + quoted_unit(table_.columns[conversion.column].unit_spelling) +
+                        " of " + quoted(conversion.name) + " is not known",
                     expected_units(quantity));
   }
 
@@ -99,8 +112,8 @@ class ConversionSetter final {
       return {};
     }
     return error_at(table_.header_line + 1,
-                    "the unit " + quoted(table_.columns[conversion.column].unit_spelling) + " of " +
-                        quoted(conversion.name) +
+                    "the unit " + quoted_unit(table_.columns[conversion.column].unit_spelling) +
+                        " of " + quoted(conversion.name) +
                         " may be degrees, as in German, or gon, 400 of which are a turn",
                     "expected deg or gon in its place");
   }
@@ -256,6 +269,15 @@ class ConversionSetter final {
       u->coverage = column.coverage > 0.0       ? column.coverage
                     : statements.coverage > 0.0 ? statements.coverage
                                                 : kImportCoverage;
+      if (column.coverage == 0.0 && statements.coverage == 0.0 && statements.doubtful_line == 0 &&
+          is_standard_symbol(u->name)) {
+        return error_at(table_.header_line + 1,
+                        quoted(u->name) +
+                            " is the symbol of a standard uncertainty, and nothing states its "
+                            "coverage factor",
+                        "expected it, such as \"u(A) (k=1)\" or \"U(A) (k=2)\", or a line "
+                        "\"k = 1\" before the table");
+      }
       unusual = column.coverage > 0.0 && column.coverage != kImportCoverage ? u : unusual;
       silent = column.coverage == 0.0 && statements.coverage == 0.0 ? u : silent;
     }

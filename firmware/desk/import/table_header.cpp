@@ -85,6 +85,7 @@ constexpr std::string_view kPhaseWords[] = {"phase",
                                             "angolo"};
 constexpr std::string_view kUncertaintyWords[] = {"u",
                                                   "u95",
+                                                  "uc",
                                                   "unc",
                                                   "uncert",
                                                   "uncertainty",
@@ -96,7 +97,7 @@ constexpr std::string_view kUncertaintyWords[] = {"u",
                                                   "incertidumbre",
                                                   "incertezza"};
 // Of an uncertainty with k = 1, as words of their own or behind the uncertainty.
-constexpr std::string_view kStandardNames[] = {"standard", "std", "standardunsicherheit",
+constexpr std::string_view kStandardNames[] = {"standard", "std", "uc", "standardunsicherheit",
                                                "standardmessunsicherheit"};
 constexpr std::string_view kStandardNamesBehind[] = {
     "type", "tipo", "t\303\255pica", "tipica", "est\303\241ndar", "estandar"};
@@ -367,6 +368,9 @@ std::string without_argument(std::string name) {
                                              "(\xCF\x89)", "(j\xCF\x89)", "(i\xCF\x89)"};
   for (std::size_t at = name.find(kAngle); at != std::string::npos; at = name.find(kAngle)) {
     name.replace(at, kAngle.size(), "arg ");
+  }
+  if (name.compare(0, 3, "u_c") == 0 && (name.size() == 3 || !is_part_of_word(name[3]))) {
+    name.erase(1, 1);
   }
   for (const std::string_view argument : kArguments) {
     const std::size_t at = name.find(argument);

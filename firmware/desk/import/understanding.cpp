@@ -38,7 +38,9 @@ bool is_coverage_assumed(const Conversion& u, const FoundTable& table) noexcept 
   const std::string& name = u.name;
   const bool is_letter_next =
       name.size() > 1 && ((name[1] >= 'a' && name[1] <= 'z') || (name[1] >= 'A' && name[1] <= 'Z'));
-  const bool is_symbol = !name.empty() && name[0] == 'U' && !is_letter_next;
+  // "U95" states what it covers, not how.
+  const bool is_symbol =
+      !name.empty() && name[0] == 'U' && !is_letter_next && name.compare(1, 2, "95") != 0;
   return !is_symbol && name.compare(0, 2, "u_") != 0;
 }
 

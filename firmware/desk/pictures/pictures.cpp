@@ -137,7 +137,8 @@ std::string trials_of(const EvaluationResults& results) {
   const bool is_box = results.settings.distribution == Distribution::kBox;
   return words_of([&](TextWriter& out) {
     out.integer(result.trials).text(" trials, S, f0 and β ");
-    out.text(is_box ? "uniform within ±u" : "jointly normal").text("; u(E) = ");
+    out.text(is_box ? "uniform within ±u; standard deviation over the box "
+                    : "jointly normal; u(E) = ");
     out.text(in_print(result.u, 2).c_str()).text(" V² s");
   });
 }
@@ -514,7 +515,9 @@ void write_histogram(const Picture& picture, const EvaluationResults& results, T
   out.text("  with boxes fs solid border lc '#606060' lc '#a0a0a0' notitle, \\\n");
   out.text("  keyentry with lines ls 1 title 'E at the estimates', \\\n");
   out.text("  keyentry with lines ls 2 title '");
-  out.general(kPercent * result.probability, 6).text(" % coverage interval'\n");
+  const bool is_box = results.settings.distribution == Distribution::kBox;
+  out.general(kPercent * result.probability, 6);
+  out.text(is_box ? " % of the trials over the box'\n" : " % coverage interval'\n");
 }
 
 // Trend
@@ -598,8 +601,9 @@ constexpr Kind kKinds[] = {
      "the limits. Below: its error, what the filter passes of the sensor's output less G x.",
      always, write_signal},
     {kPictureFiles[3], app::ReportSection::kMonteCarlo, "energy within the uncertainties",
-     "How often the Monte Carlo trials came to which energy. The dark part is within the coverage "
-     "interval.",
+     "How often the Monte Carlo trials of the paper came to which energy; the dark part holds the "
+     "stated share of them. With S, f0 and β uniform within ±u this is no coverage interval of E, "
+     "and its width is not the standard uncertainty of E: these are under Uncertainty of E.",
      nullptr, has_histogram, write_histogram},
     {kPictureFiles[4], app::ReportSection::kTrend, "energy over the length of the signal",
      "The largest energy for signals of different lengths, and the straight line through them. "

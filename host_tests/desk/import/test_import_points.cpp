@@ -513,13 +513,40 @@ TEST(Import, SaysWhichCoverageFactorItAssumes) {
   const auto says = [&words](const std::string& header) {
     return imported(header + "\n" + kRows).understanding.find(words) != std::string::npos;
   };
-  EXPECT_TRUE(says("Frequency,Magnitude,Phase,u(Magnitude),u(Phase)"));
+  EXPECT_TRUE(says("Frequency,Magnitude,Phase,U95,U95"));  // What it covers, but not how.
   EXPECT_TRUE(says("Frequency,Magnitude,Phase,Uncertainty (Magnitude),Uncertainty (Phase)"));
   // The native form, the symbol of an expanded uncertainty, and where it is stated.
   EXPECT_FALSE(says("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"));
   EXPECT_FALSE(says("Frequency,Magnitude,Phase,U(Magnitude),U(Phase)"));
   EXPECT_FALSE(says("Frequency,Magnitude,Phase,u(Magnitude) k=2,u(Phase) k=2"));
   EXPECT_FALSE(says("# k = 2\nFrequency,Magnitude,Phase,u(Magnitude),u(Phase)"));
+}
+
+// By the GUM u is a standard uncertainty and U an expanded one; half as large or not is not
+// guessed.
+TEST(Import, AsksWhatASmallUIs) {
+  const std::string rows = std::string("\n") + kPlainRows;
+  for (const char* header : {"f,A,phase,u(A),u(phase)", "f,A,phase,U(A),u(phase) (deg)",
+                             "f,A,phase,u (A) [%],U(phase)"}) {
+    const ImportError error = refused(header + rows);
+    EXPECT_NE(error.problem.find("is the symbol of a standard uncertainty"), std::string::npos)
+        << header;
+    EXPECT_NE(error.expectation.find("u(A) (k=1)"), std::string::npos);
+  }
+  expect_uncertainties("f,A,phase,u(A) (k=1),u(phase) (k=1)" + rows, 0.4, 0.5);
+  expect_uncertainties("f,A,phase,u(A) (k=2),u(phase) (k=2)" + rows, 0.2, 0.25);
+  expect_uncertainties("k = 1\nf,A,phase,u(A),u(phase)" + rows, 0.4, 0.5);
+  // A combined standard uncertainty says k by its symbol, and the native names are expanded ones.
+  expect_uncertainties("f,A,phase,uc(A),uc(phase)" + rows, 0.4, 0.5);
+  expect_uncertainties("f,A,phase,u_c(A),u_c(phase)" + rows, 0.4, 0.5);
+  expect_uncertainties("f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg" + rows, 0.2, 0.25);
+}
+
+TEST(Import, QuotesAUnitWithoutTheBracketOfItsName) {
+  EXPECT_EQ(refused(std::string("f,A,phase,U(A) (% of S),U(phase)\n") + kPlainRows).problem,
+            "the unit \"% of S\" of \"U(A) (% of S)\" is not known");
+  EXPECT_EQ(refused(std::string("f,A,phase,U(A),U(phase) (%)\n") + kPlainRows).problem,
+            "the unit \"%\" of \"U(phase) (%)\" is not known");
 }
 
 TEST(Import, UnitsBehindNumbers) {
@@ -651,7 +678,7 @@ TEST(Import, UncertaintiesBehindPlusAndMinus) {
 
 TEST(Import, SymbolsOfResponses) {
   for (const char* header :
-       {"f,|H|,arg(H),U(|H|),U(arg(H))", "f,|H(f)|,arg(H(f)),U,U", "f,abs(H),arg H,u(H),u(arg H)",
+       {"f,|H|,arg(H),U(|H|),U(arg(H))", "f,|H(f)|,arg(H(f)),U,U", "f,abs(H),arg H,U(H),U(arg H)",
         "f,|H(j\u03C9)|,\u2220H(j\u03C9),U,U", "Frequency f,Sensitivity S,Phase phi,U,U",
         "Frequency (f) [Hz],Sensitivity (S),Phase (\u03C6) [deg],U,U"}) {
     expect_uncertainties(std::string(header) + "\n" + kPlainRows, 0.2, 0.25);

@@ -128,7 +128,8 @@ function histogramPicture([low, high, ...counts], {energy, monte_carlo: trials})
   const isClose = high - low < CLOSE * high;
   const shift = (value) => (isClose ? value - energy.E : value);
   const width = (high - low) / counts.length;
-  const interval = `${shown(100 * trials.probability)} % coverage interval`;
+  // Over the box of the paper the trials' own interval is none of E.
+  const interval = `${shown(100 * trials.probability)} % ${trials.distribution === 'normal' ? 'coverage interval' : 'of the trials'}`;
   return {title: 'Energy within the uncertainties', note: `Of ${trials.trials} devices drawn at random within them (Monte Carlo).`,
     x: {label: isClose ? 'E minus E at the estimates' : 'E', unit: 'V² s', digits: 6,
       range: [shift(Math.min(low, energy.E)), shift(Math.max(high, energy.E))],
