@@ -261,7 +261,7 @@ class FigureValues(ProgramTest):
         self.assertIsNone(band["instead_of_U_percent"], "U is the one to use there")
         self.assertIn("None exceeds: proven at the estimates", text)
         page = html.unescape((self.directory / "out" / "report.html").read_text(encoding="utf-8"))
-        self.assertRegex(page, r"0\.0001385 % of S.a; 95 % interval 0 to 0\.02\d %")
+        self.assertRegex(page, r"0\.0001385 % of.S.a; 95 % interval 0 to 0\.02\d %")
         for words in [text, page]:
             self.assertNotRegex(words, r"[ >]0\.0+[ <]")
 
@@ -478,7 +478,7 @@ class FigureWords(ProgramTest):
             (r"  In band, with its delay +5\.755 +0\.02\d +5\.\d+\n", "Worst in-band error, with its delay",
              r"5\.755 % ± 0\.02\d %"),
             (r"  The paper's figure, sqrt\(E/T\) +148\.7\d +0\.\d\d +15\d\.\d\n", "The paper's figure, √(E/T)",
-             r"148\.7\d % ± 0\.\d\d % of S.a"),
+             r"148\.7\d % ± 0\.\d\d % of.S.a"),
         ]
         for line, name, value in rows:
             with self.subTest(name):

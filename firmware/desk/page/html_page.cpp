@@ -7,6 +7,7 @@
 #include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_warnings.hpp"
+#include "emax/base/units.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/compare/figure_text.hpp"
@@ -15,6 +16,7 @@
 #include "desk/page/html_markup.hpp"
 #include "desk/page/page_frame.hpp"
 #include "desk/page/page_picture.hpp"
+#include "desk/report/figure_settling.hpp"
 #include "desk/report/warning_words.hpp"
 
 namespace emax::desk {
@@ -144,10 +146,10 @@ std::string value_of(const EvaluationResults& results, const app::EnergyUncertai
                      double energy) {
   const double percent = results.percent_of(energy);
   if (!results.is_one_sided(known, energy)) {
-    return percentage(percent, known.expanded_percent()) + " of S&nbsp;a";
+    return percentage(percent, known.expanded_percent()) + " of&nbsp;S&nbsp;a";
   }
   const CoverageInterval interval = results.interval_percent_of(known.shortest, energy);
-  return percentage(percent, 0.0) + " of S&nbsp;a; " + words_of([&](TextWriter& out) {
+  return percentage(percent, 0.0) + " of&nbsp;S&nbsp;a; " + words_of([&](TextWriter& out) {
            out.general(kPercent * results.settings.probability, 6).text(" % interval ");
            out.text(range_text(interval.low, interval.high).c_str()).text(" %");
          });
@@ -167,16 +169,6 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
 }
 
 constexpr const char* kFirst = " class=\"first\"";
-
-// The figure that engineers rank sensors by; the next best where it is refused, or where no delay
-// was to be taken out.
-const app::FigureResults* leading_figure(const EvaluationResults& results) {
-  const bool is_plain = results.settings.delay_choice == app::DelayChoice::kNone;
-  if (results.matched.exists() && !is_plain) {
-    return &results.matched;
-  }
-  return results.band.exists() ? &results.band : nullptr;
-}
 
 void append_leading_figure(std::string& html, const EvaluationResults& results) {
   if (const app::FigureResults* figure = leading_figure(results)) {
@@ -204,8 +196,9 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
                 is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",
                 value);
   if (results.ideal.exists() && results.ideal.energy_v2s >= 0.0) {
-    append_figure(html, "", "The same of an ideal sensor, K = S",
-                  percentage(results.percent_of(results.ideal.energy_v2s), 0.0) + " of S&nbsp;a");
+    append_figure(
+        html, "", "The same of an ideal sensor, K = S",
+        percentage(results.percent_of(results.ideal.energy_v2s), 0.0) + " of&nbsp;S&nbsp;a");
   }
 }
 
@@ -228,8 +221,8 @@ void append_energy(std::string& html, const EvaluationResults& results) {
     return;
   }
   append_figure(html, "", name + ", with U (k = 2)",
-                "(" + format.number(energy) + " ± " + format.number(kCoverageFactor * u) + ")" +
-                    format.unit());
+                "(" + format.number(energy) + "&nbsp;±&nbsp;" + format.number(kCoverageFactor * u) +
+                    ")" + format.unit());
 }
 
 constexpr const char* kMore = " class=\"more\"";
@@ -280,7 +273,9 @@ void append_bound(std::string& html, const EvaluationResults& results) {
   }
 }
 
-void append_conditions(std::string& html, const EvaluationResults& results, bool in_g) {
+/// @param[in] settling_s Of the first figure's error; 0 for none.
+void append_conditions(std::string& html, const EvaluationResults& results, double settling_s,
+                       bool in_g) {
   const app::Settings& settings = results.settings;
   const double limit = results.limit_mps2;
   html +=
@@ -305,6 +300,10 @@ void append_conditions(std::string& html, const EvaluationResults& results, bool
         }
         const bool is_paper = settings.method == Method::kPaper;
         out.text(is_paper ? ", by the paper's method: other signals may reach more." : ".");
+        if (settling_s > 0.0) {
+          out.text(" The error of the first figure settles to 5 % in ");
+          out.general(kMilli * settling_s, 4).text(" ms.");
+        }
       }) +
       "</p>\n";
 }
@@ -343,12 +342,26 @@ void append_warnings(std::string& html, const EvaluationResults& results,
                 std::to_string(count) + (count == 1 ? " warning" : " warnings"), list + "</ul>");
 }
 
-void append_headline(std::string& html, const EvaluationResults& results,
+// What no number of warnings tells: a short T, below the limit of a warning.
+void append_short_time(std::string& html, const EvaluationResults& results, double settling_s) {
+  if (results.settings.duration_s < settling_s) {
+    append_figure(html, " class=\"warns\"", "One note",
+                  link_to(app::ReportSection::kInBand) + ": " + words_of([&](TextWriter& out) {
+                    out.text("T = ").general(kMilli * results.settings.duration_s, 10);
+                    out.text(" ms is shorter than the settling time of this error, ");
+                    out.general(kMilli * settling_s, 4);
+                    out.text(" ms, so it has not developed: a longer signal may make more of it");
+                  }));
+  }
+}
+
+void append_headline(std::string& html, const EvaluationResults& results, double settling_s,
                      const std::vector<app::Warning>& warnings, const char* other_criterion) {
   const bool is_clear = warnings.empty() && other_criterion == nullptr;
   html += std::string("<dl class=\"headline") + (is_clear ? "" : " doubtful") + "\">\n";
   append_leading_figure(html, results);
   append_warnings(html, results, warnings, other_criterion);
+  append_short_time(html, results, settling_s);
   append_second_figure(html, results);
   append_papers_figure(html, results);
   append_energy(html, results);
@@ -379,6 +392,48 @@ std::string opening(const app::ReportContext& context) {
                       is_marked ? app::kSimulationBanner : "", running_words(context));
 }
 
+std::string cell_of(double value, int decimals) {
+  return "<td>" + words_of([&](TextWriter& out) { out.fixed(value, decimals); }) + "</td>";
+}
+
+// Two digits of U, and the value to match.
+std::string cells_of(double value, double expanded) {
+  constexpr int kMostDecimals = 12;
+  const int decimals =
+      std::clamp(1 - static_cast<int>(std::floor(std::log10(expanded))), 0, kMostDecimals);
+  return cell_of(value, decimals) + cell_of(expanded, decimals);
+}
+
+// The points of a table; those of a measurement are in its budget.
+void append_points(std::string& html, const EvaluationResults& results,
+                   const app::ReportContext& context) {
+  if (results.source != app::Source::kPoints || context.measurement != nullptr ||
+      certificate_number(context.labels) == nullptr) {
+    return;
+  }
+  html +=
+      "<section id=\"points\">\n<h2>Points of the table</h2>\n<p class=\"about\">U: expanded, k = "
+      "2, with what all points have in common</p>\n<details><summary>Each point</summary>\n"
+      "<table class=\"numbers\">\n<thead><tr><th>f</th><th>A</th><th>U(A)</th><th>phase</th>"
+      "<th>U(phase)</th></tr>\n<tr><th>Hz</th><th>V/(m/s²)</th><th>V/(m/s²)</th><th>deg</th>"
+      "<th>deg</th></tr></thead>\n<tbody>\n";
+  const FrequencyResponse& response = results.fit.response();
+  for (std::size_t i = 0; i < response.size(); ++i) {
+    const ResponsePoint& point = response.points()[i];
+    const Complex beside = results.fit.shared_beside(i);
+    const double u = std::hypot(point.u_amplitude, response.common()[i] * point.amplitude,
+                                beside.re * point.amplitude);
+    const double u_phase_rad = std::hypot(point.u_phase_rad, beside.im);
+    html += "<tr><td>" + words_of([&](TextWriter& out) { out.general(point.frequency_hz, 7); }) +
+            "</td>" + cells_of(point.amplitude, kCoverageFactor * u) +
+            (is_phase_known(point) ? cells_of(kDegreesPerRadian * point.phase_rad,
+                                              kCoverageFactor * kDegreesPerRadian * u_phase_rad)
+                                   : "<td>-</td><td>-</td>") +
+            "</tr>\n";
+  }
+  html += "</tbody></table>\n</details>\n</section>\n";
+}
+
 void append_budget(std::string& html, const std::string& budget) {
   if (!budget.empty()) {
     html +=
@@ -396,8 +451,10 @@ std::string closing() {
 
 }  // namespace
 
-void write_page(const EvaluationResults& results, const app::ReportContext& context,
+void write_page(const EvaluationResults& results, const app::ReportContext& given,
                 const std::vector<PagePicture>& pictures, TextWriter& out) {
+  app::ReportContext context = given;
+  context.rounds_to_u = certificate_number(given.labels) != nullptr;
   std::string body;
   HtmlWords words(body);
   TextWriter report(words);
@@ -408,12 +465,14 @@ void write_page(const EvaluationResults& results, const app::ReportContext& cont
 
   const std::vector<app::Warning> warnings = warnings_of(results, context);
   std::string html = opening(context);
-  append_headline(html, results, warnings, context.other_criterion);
-  append_conditions(html, results, context.in_g);
+  const double settling_s = settling_time_of_leading_s(results);
+  append_headline(html, results, settling_s, warnings, context.other_criterion);
+  append_conditions(html, results, settling_s, context.in_g);
   if (warnings.empty() && context.other_criterion == nullptr) {
     html += "<p class=\"note\">No warnings.</p>\n";
   }
   append_budget(body, markup.budget());
+  append_points(body, results, context);
   body += certificate_of(results, context);
   if (pictures.empty()) {
     html += std::string("<p class=\"note\">No pictures: gnuplot was missing when this page was ") +

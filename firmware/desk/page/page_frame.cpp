@@ -95,6 +95,7 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   body { max-width: none; padding: 0; line-height: 1.35; }
   h2 { margin-top: 1rem; padding-top: .4rem; }
   .headline { margin: .6rem 0; padding: .7rem; }
+  .headline dd { font-size: .95rem; }
   .rows th, .rows td { padding-top: .08rem; padding-bottom: .08rem; }
   footer { margin-top: .5rem; padding-top: .3rem; }
   /* The header of a table stands on every page. */
@@ -102,7 +103,7 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   .marked .banner { display: table-header-group; break-inside: avoid; position: static; color: #000000; background: none; line-height: 2; }
   .marked main, .marked footer { display: table-row-group; }
   figure { margin: .7rem 0; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  figure svg { max-height: 80mm; }
+  figure svg { max-height: 72mm; }
   #fit svg { max-height: 105mm; }
   #ranking svg { max-height: 230mm; max-width: 130mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
@@ -114,6 +115,8 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   .rows tr:last-child { break-before: avoid; }
   /* What is said of a picture stays with it. */
   #error-system, #energy, #trend { break-inside: avoid; }
+  /* Nor is a figure parted from its U, or the signature from what is signed. */
+  #in-band .rows, #certificate, #budget, #points { break-inside: avoid; }
   /* What is folded on a screen is printed all the same. */
   details::details-content { content-visibility: visible; block-size: auto; }
   summary { list-style: none; }
@@ -123,6 +126,8 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   .wide { overflow: visible; }
   .numbers { font-size: 8pt; }
   .numbers th, .numbers td { padding: .05rem .35rem; }
+  .numbers tbody tr:first-child > * { padding-top: .3rem; }
+  .numbers thead tr:last-child th { padding-bottom: .15rem; }
   .numbers .name { min-width: 0; }
 }
 </style>

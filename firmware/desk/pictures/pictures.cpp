@@ -331,7 +331,7 @@ void write_frequency_response(const Picture& picture, const EvaluationResults& r
   out.text("turn(f, p) = (p - phase(f))*degrees\n");
   // Not by yerrorbars, which blank out what is around their points: short bars would be gone.
   out.text(
-      "set style arrow 1 heads size screen 0.003,90 fixed lc '#000000' lw 1\nset samples 400\n");
+      "set style arrow 1 heads size screen 0.0015,90 fixed lc '#404040' lw 0.6\nset samples 400\n");
   write_response_key(range.common, out);
   out.text(is_logarithmic ? "set logscale y\nset format x ''\n" : "set format x ''\n");
   write_axis(out, "y", "amplitude", response.unit);

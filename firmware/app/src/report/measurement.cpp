@@ -398,7 +398,7 @@ void write_measurement_section(const Measurement& measurement, const Wlsp* fit,
 
 void write_measurement(const ReportContext& context, const EvaluationResults* refused,
                        TextWriter& out, ReportMarkup* markup) noexcept {
-  ReportWriter writer(out, context.in_g, markup);
+  ReportWriter writer(out, context, markup);
   write_title(context, writer);
   writer.part(ReportPart::kWarning)
       .text("NOT COMPLETE: a fault has ended the work, so there is no maximum energy.\n");

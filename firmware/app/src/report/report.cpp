@@ -187,7 +187,8 @@ struct Estimate {
 };
 
 void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
-  const int decimals = decimals_for(estimate.u);
+  const int decimals =
+      out.rounds_to_u() ? decimals_of(estimate.expanded, 2) : decimals_for(estimate.u);
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(11).text(estimate.name);
   if (estimate.is_held) {
@@ -439,7 +440,7 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   const double energy = results.energy_v2s();
   out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
   const Criterion criterion = results.settings.criterion;
-  out.label("E").scientific(energy, 8).text(" V^2 s").line();
+  out.energy("E", energy, kCoverageFactor * results.uncertainty.u_v2s).line();
   out.label("xi = E/(a^2 T)").general(results.xi(), 7).text(" (V/(m/s^2))^2");
   if (out.in_g()) {
     out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");
@@ -663,7 +664,7 @@ void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out)
         "  then too small by about the Birge ratio of ");
     out.general(fit.birge_ratio, 3).text(".\n");
     out.text(
-        "  Do not trust the estimates to that, either: other weights would move them by as much.\n"
+        "  Other weights would move the estimates by as much.\n"
         "  Check: the points named below (multiples of 50 or 60 Hz: hum), resonances of mounting "
         "and\n"
         "  cable, crosstalk, a delay between the channels (a phase that grows with frequency), an "
@@ -702,7 +703,7 @@ double reduced_chi_square_limit(std::size_t dof) noexcept {
 
 void write_report(const EvaluationResults& results, const ReportContext& context, TextWriter& out,
                   ReportMarkup* markup) noexcept {
-  ReportWriter writer(out, context.in_g, markup);
+  ReportWriter writer(out, context, markup);
   write_title(context, writer);
   write_figures(results, context, writer);
   write_input(results, context, writer);

@@ -135,7 +135,7 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
   const FitJudgement& judgement = results.judgement;
   const WlspFit& fit = results.fit.result();
   const int decimals = decimals_for(judgement.u_sensitivity);
-  ReportWriter writer(out, context.in_g, markup);
+  ReportWriter writer(out, context, markup);
   write_title(context, writer);
   writer.heading(ReportSection::kInput, "WHAT WAS PUT IN");
   write_points_source(results, context, writer);

@@ -3,6 +3,8 @@
 
 #include "emax/app/base/version.hpp"
 
+#include "report_figures.hpp"
+
 namespace emax::app {
 namespace {
 
@@ -52,6 +54,14 @@ TextWriter& ReportWriter::quote(const char* words) noexcept {
     return *this;
   }
   return one_line(words, kLabelShown);
+}
+
+TextWriter& ReportWriter::energy(const char* name, double energy_v2s,
+                                 double expanded_v2s) noexcept {
+  constexpr int kAll = 8;
+  const int known = decimals_of(expanded_v2s, 2) - decimals_of(energy_v2s, 1);
+  const bool is_short = rounds_to_u_ && expanded_v2s > 0.0 && known >= 0 && known < kAll;
+  return label(name).scientific(energy_v2s, is_short ? known : kAll).text(" V^2 s");
 }
 
 TextWriter& ReportWriter::and_g(double acceleration_mps2, int digits) noexcept {

@@ -19,8 +19,8 @@ inline constexpr std::size_t kLabelWidth = 26;
 class ReportWriter final : public TextWriter {
  public:
   /// @param[in] markup Null for text.
-  ReportWriter(const TextWriter& out, bool in_g, ReportMarkup* markup) noexcept
-      : TextWriter(out), markup_(markup), in_g_(in_g) {}
+  ReportWriter(const TextWriter& out, const ReportContext& context, ReportMarkup* markup) noexcept
+      : TextWriter(out), markup_(markup), in_g_(context.in_g), rounds_to_u_(context.rounds_to_u) {}
 
   TextWriter& heading(ReportSection section, const char* words) noexcept;
   TextWriter& label(const char* name) noexcept;
@@ -34,8 +34,11 @@ class ReportWriter final : public TextWriter {
   TextWriter& quote(const char* words) noexcept;
 
   bool in_g() const noexcept { return in_g_; }
+  bool rounds_to_u() const noexcept { return rounds_to_u_; }
   /// Text of its own, without marks.
   bool is_plain() const noexcept { return markup_ == nullptr; }
+  /// A label and its energy, with nine digits or those that its U carries where `rounds_to_u()`.
+  TextWriter& energy(const char* name, double energy_v2s, double expanded_v2s) noexcept;
   /// " (0.1057446 g)" behind an acceleration where that is asked for, else nothing.
   TextWriter& and_g(double acceleration_mps2, int digits) noexcept;
   /// " (10.16949 V/g)" behind a sensitivity.
@@ -44,6 +47,7 @@ class ReportWriter final : public TextWriter {
  private:
   ReportMarkup* markup_;
   bool in_g_;
+  bool rounds_to_u_;
 };
 
 /// As many decimals as give `u` three significant digits.

@@ -52,6 +52,7 @@ struct ReportContext {
   std::uint32_t marked = 0;       ///< The rows with a star: a sum of `kRow...`.
   /// A warning that the results are those of another criterion than was asked for; null if not.
   const char* other_criterion = nullptr;
+  bool rounds_to_u = false;  ///< Two digits of U and values to match, as on a certificate.
 };
 
 /// m/s^2, exactly (ISO 80000-3).
