@@ -52,7 +52,9 @@ class PictureTest:
     def report(self, *arguments, **options) -> subprocess.CompletedProcess:
         """A run that must end well, with its files in out/."""
         result = self.run_program("report", *arguments, "--out", "out", **options)
-        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        # A certificate may lack labels, which is told in one line.
+        lines = [line for line in result.stderr.splitlines() if not line.startswith(b"emax: --certificate-number: ISO/IEC 17025 also")]
+        self.assertEqual((result.returncode, lines), (0, []))
         return result
 
     def out(self, name: str) -> pathlib.Path:
@@ -278,7 +280,10 @@ class Pictures(PictureTest, ProgramTest):
         interval = results["monte_carlo"]["interval"]
         for name, expected in [("low", interval[0]), ("high", interval[1]), ("E", results["energy"]["E"])]:
             self.assertAlmostEqual(value[name], 1e3 * expected, delta=1e-12)
-        self.assertIn("90 % coverage interval", texts_of(self.out("histogram.svg")))
+        self.assertIn("90 % of the trials over the box", texts_of(self.out("histogram.svg")))
+        self.assertIn("standard deviation over the box", " ".join(texts_of(self.out("histogram.svg"))))
+        self.report(*MODEL, *TREND, "--distribution", "normal")
+        self.assertIn("95 % coverage interval", texts_of(self.out("histogram.svg")))
 
     def test_trend_shows_the_length_of_the_report(self):
         # Which need not be one of those of the trend; its point has the bound above it.
@@ -650,9 +655,15 @@ class Page(PageTest, ProgramTest):
         results = json.loads(self.content("results.json"))
         self.open()
         headline = self.browser.evaluate(
-            "[...document.querySelectorAll('.headline div:not(.warns) dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
+            "[...document.querySelectorAll('.headline div:not(.warns):not(.notes) dd')].map(dd => dd.textContent.replaceAll('\u00a0', ' '))"
         )
         energy, band, known = results["energy"], results["band"], results["uncertainty"]
+        # The first figure settles later than the second, and neither within 2 ms. The README has 4.5084 ms for a sensor as this.
+        note = self.browser.evaluate("document.querySelector('.headline .notes').innerText")
+        settling_ms = float(re.search(r"settling time of this error, ([\d.]+) ms", note)[1])
+        self.assertAlmostEqual(settling_ms, 4.5084, delta=0.02)
+        self.assertGreater(settling_ms, 1e3 * band["settling_time_s"])
+        self.assertIn(f"settles to 5 % in {settling_ms} ms", self.browser.evaluate("document.body.innerText"))
         for shown, figure, decimals in [(headline[0], band["matched"], 3), (headline[1], band, 3)]:
             self.assertEqual(shown, f"{figure['rms_percent']:.{decimals}f} % ± {figure['U_percent']:.{decimals}f} % of S a")
         percent = 100 * energy["rms"] / (1.037 * 1.037)
@@ -835,7 +846,7 @@ class Certificate(PageTest, ProgramTest):
         "device": "DJB A/1800/V", "serial": "4711", "operator": "J. Doe", "date": "2024-05-01",
         "certificate-number": "K-17", "laboratory": "Lab & Co, Town", "country": "DE", "customer": "Somebody, Elsewhere",
         "maker": "DJB", "model-name": "A/1800/V", "reference-id": "no. 7, certificate R-1", "conditions": "23 \u00b0C, 45 %",
-        "procedure": "P-4", "label": "bench=B1",
+        "procedure": "P-4", "place": "customer", "issue-date": "2024-05-03", "approved-by": "A. Chief", "label": "bench=B1",
     }
 
     def pages(self) -> list[str]:
@@ -850,7 +861,8 @@ class Certificate(PageTest, ProgramTest):
         output = self.report(*TABLE1, *QUICK, *options_of(self.LABELS)).stdout.decode()
         block = output.split("LABELS (as given)\n")[1].split("\n\n")[0]
         names = ["Device", "Serial number", "Operator", "Date", "Certificate number", "Laboratory", "Country", "Customer",
-                 "Manufacturer", "Model", "Reference sensor", "Conditions", "Procedure", "bench"]
+                 "Manufacturer", "Model", "Reference sensor", "Conditions", "Procedure", "Place of the measurement", "Date of issue",
+                 "Approved by", "bench"]
         given = [*list(self.LABELS.values())[:-1], "B1"]
         self.assertEqual([(line[:28].strip(), line[28:]) for line in block.splitlines()], list(zip(names, given)))
         labels = json.loads(self.content("results.json"))["labels"]
@@ -862,12 +874,32 @@ class Certificate(PageTest, ProgramTest):
         self.open()
         self.assertIn("Calibration certificate K-17", self.browser.evaluate("document.querySelector('header').innerText"))
         words = self.section()
-        for part in ["no. 7, certificate R-1", "23 °C, 45 %", "Procedure: P-4", "coverage factor k = 2", "the item tested only", "J. Doe"]:
+        for part in ["no. 7, certificate R-1", "23 °C, 45 %", "Procedure: P-4", "coverage factor k = 2", "the item tested only",
+                     "A. Chief", "Parameters by weighted least squares;", "as it was provided",
+                     "may not be reproduced other than in full except with the written approval of the issuing laboratory.",
+                     "95.45 %", "What the points have in common, such as the reference's sensitivity, was not stated"]:
             self.assertIn(part, words)
         self.assertIn("Lab & Co, Town", self.browser.evaluate("document.body.innerText"))
         # Not the paper's unit, and one way to write powers.
         for text in ["mV", "e-0", "e+0"]:
             self.assertNotIn(text, self.browser.evaluate("document.body.innerText"))
+
+    def test_U_has_two_digits_and_the_value_matches(self):
+        self.report(*TABLE1, *QUICK, *options_of(self.LABELS))
+        self.open()
+        model = json.loads(self.content("results.json"))["model"]
+        table = self.browser.evaluate("[...document.querySelectorAll('#fit tbody tr')].slice(0, 3).map(r => [...r.cells].map(c => c.innerText))")
+        for row, name in zip(table, ["S", "f0", "beta"], strict=True):
+            U = 2 * model[f"u{name}"]
+            digits = 1 - math.floor(math.log10(U))
+            self.assertEqual((row[1], row[4]), (f"{model[name]:.{digits}f}", f"{U:.{digits}f}"))
+        # And so have the points of the table.
+        points = self.browser.evaluate("[...document.querySelectorAll('#points tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertEqual(len(points), self.content("frequency_response.csv").count("\n") - 1)
+        for row in points:
+            for value, U in [row[1:3], row[3:5]]:
+                self.assertEqual(len(U.replace(".", "").lstrip("0")), 2, row)
+                self.assertEqual(value.partition(".")[2].__len__(), U.partition(".")[2].__len__(), row)
 
     def test_every_page_names_the_item_and_its_number(self):
         self.report(*TABLE1, *QUICK, *options_of(self.LABELS))
@@ -883,9 +915,13 @@ class Certificate(PageTest, ProgramTest):
         rows = {
             "laboratory": "Laboratory", "customer": "Customer", "device": "Device", "serial": "Serial number", "maker": "Manufacturer",
             "model-name": "Model", "date": "Date of the calibration", "operator": "Who measured", "procedure": "Procedure",
-            "reference-id": "Traceability", "conditions": "Conditions",
+            "reference-id": "Traceability", "conditions": "Conditions", "place": "Place of the measurement",
+            "issue-date": "Date of issue", "approved-by": "Approved by",
         }
-        self.report(*TABLE1, *QUICK, "--certificate-number", "K-17")
+        told = self.report(*TABLE1, *QUICK, "--certificate-number", "K-17").stderr.decode()
+        for name in rows:
+            self.assertIn(f"--{name}", told)
+        self.assertEqual(told.count("\n"), 1)
         self.open()
         stated = "Object.fromEntries([...document.querySelectorAll('#certificate tr')].map(r => [r.cells[0].innerText, r.cells[1].innerText]))"
         found = self.browser.evaluate(stated)
@@ -907,7 +943,16 @@ class Certificate(PageTest, ProgramTest):
             self.assertIn("Report, accelerometer, serial number not given", page)
         self.assertNotIn("signature", self.section())
         self.assertIn("no item was tested", self.section())
-        self.assertEqual(self.section().count("Not stated"), 2, "traceability and conditions")
+        self.assertEqual(self.section().count("Not stated"), 1, "conditions")
+        # Nor are parameters as given with a number and a reference sensor.
+        result = self.report(*MODEL, *QUICK, *options_of(self.LABELS))
+        self.assertEqual(result.stderr, b"")
+        self.open()
+        self.assertIn("Computation K-17", self.browser.evaluate("document.querySelector('header').innerText"))
+        self.assertNotIn("certificate", self.browser.evaluate("document.querySelector('header').innerText").lower())
+        self.assertIn("no item was tested", self.section())
+        self.assertNotIn("By the reference sensor", self.section())
+        self.assertIn("End of the report", self.section())
 
     def test_nasty_labels_below_the_pages(self):
         self.report(*MODEL, *QUICK, "--serial", "\"; } body { display: none } /* \\", "--certificate-number", "</style><script>x()</script>")
@@ -934,7 +979,10 @@ class Certificate(PageTest, ProgramTest):
         for page in pages:
             self.assertNotRegex(page, r"(?m)^ *In band, [^\n0-9]*\n\s*(Report|Certificate), ")
         # Folded on the screen, but on paper to its last row.
-        self.assertRegex(self.pages()[-1], r"(?m)^ *6000 ")
+        self.assertTrue(any(re.search(r"(?m)^ *6000 ", page) for page in pages))
+        # The budget is on one page, and so are what is said of the results and their end.
+        for first, last in [(r"Uncertainty budget$", r"6000 "), (r"About these results$", r"End of the report$")]:
+            self.assertTrue(any(re.search(rf"(?m)^ *{first}", page) and re.search(rf"(?m)^ *{last}", page) for page in pages), first)
 
     def test_refused(self):
         for option in ["--customer", "--certificate-number", "--label"]:

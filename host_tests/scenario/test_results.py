@@ -496,7 +496,7 @@ class FigureWords(ProgramTest):
             self.assertIn(words, in_band)
         # DESIGN: u(E) is about 1.1e-5 over the box, and root 3 times that of normal parameters.
         self.assertRegex(text[text.index("UNCERTAINTY OF E"):text.index("MONTE CARLO OF")],
-                         r"u\(E\); U \(k = 2\) +1\.[89]\de?-?\d*;")
+                         r"u\(E\); U \(k = 2\) +1\.[89]e-05;")
         self.assertRegex(text, r"none exceeds\n")
         self.assertIn("THE FIGURES (at the estimates;", text)
         for line in re.findall(r".*proven.*", text):

@@ -345,7 +345,7 @@ void append_warnings(std::string& html, const EvaluationResults& results,
 // What no number of warnings tells: a short T, below the limit of a warning.
 void append_short_time(std::string& html, const EvaluationResults& results, double settling_s) {
   if (results.settings.duration_s < settling_s) {
-    append_figure(html, " class=\"warns\"", "One note",
+    append_figure(html, " class=\"notes\"", "Note",
                   link_to(app::ReportSection::kInBand) + ": " + words_of([&](TextWriter& out) {
                     out.text("T = ").general(kMilli * results.settings.duration_s, 10);
                     out.text(" ms is shorter than the settling time of this error, ");

@@ -53,6 +53,8 @@ summary { cursor: pointer; font-weight: bold; }
 /* A number that a warning is about must not look like one to rely on. */
 .doubtful { border-color: var(--warn); border-style: dashed; }
 .doubtful .first dd { color: var(--warn); font-weight: normal; }
+.headline .notes { grid-column: 1 / -1; }
+.headline .notes dd { font-size: 1rem; }
 .headline .warns { grid-column: 1 / -1; color: var(--warn); }
 .headline .warns dt { color: var(--warn); font-weight: bold; }
 .headline .warns dd { font-size: 1rem; }
@@ -93,7 +95,8 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
     --warn-paper: #ffffff; --note-paper: #ffffff; color-scheme: light; }
   html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; line-height: 1.35; }
-  h2 { margin-top: 1rem; padding-top: .4rem; }
+  h2 { margin-top: .7rem; padding-top: .3rem; }
+  figcaption { margin-top: .1rem; }
   .headline { margin: .6rem 0; padding: .7rem; }
   .headline dd { font-size: .95rem; }
   .rows th, .rows td { padding-top: .08rem; padding-bottom: .08rem; }
@@ -102,8 +105,10 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   .marked { display: table; width: 100%; }
   .marked .banner { display: table-header-group; break-inside: avoid; position: static; color: #000000; background: none; line-height: 2; }
   .marked main, .marked footer { display: table-row-group; }
-  figure { margin: .7rem 0; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  figure svg { max-height: 72mm; }
+  p { margin: .3rem 0; }
+  figure { margin: .4rem 0; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  figure svg { max-height: 80mm; }
+  #error-system svg { max-height: 71mm; }
   #fit svg { max-height: 105mm; }
   #ranking svg { max-height: 230mm; max-width: 130mm; }
   h1, h2, h2 + p, thead { break-after: avoid; }
