@@ -440,7 +440,7 @@ void write_energy(const EvaluationResults& results, ReportWriter& out) noexcept 
   const double energy = results.energy_v2s();
   out.heading(ReportSection::kEnergy, "MAXIMUM ENERGY (at the estimates)");
   const Criterion criterion = results.settings.criterion;
-  out.energy("E", energy, kCoverageFactor * results.uncertainty.u_v2s).line();
+  out.energy("E", energy, results.uncertainty.u_v2s).line();
   out.label("xi = E/(a^2 T)").general(results.xi(), 7).text(" (V/(m/s^2))^2");
   if (out.in_g()) {
     out.text(" (").general(square(kStandardGravity_mps2) * results.xi(), 7).text(" (V/g)^2)");
@@ -659,12 +659,12 @@ void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out)
     out.fixed(limit, 2).text(", which one fit in a hundred exceeds where the model\n");
     out.text(
         "  and the stated uncertainties hold. So the device is not a second-order system over\n"
-        "  these frequencies, or the stated uncertainties are too small. The standard\n"
-        "  uncertainties of the parameters, and that of the energy which follows from them, are\n"
-        "  then too small by about the Birge ratio of ");
-    out.general(fit.birge_ratio, 3).text(".\n");
+        "  these frequencies, or the stated uncertainties are too small. Those of parameters and\n"
+        "  energy are then too small by about the Birge ratio of ");
+    out.general(fit.birge_ratio, 3);
     out.text(
-        "  Other weights would move the estimates by as much.\n"
+        ", and\n"
+        "  the estimates themselves are not sure: other weights would move them by as much.\n"
         "  Check: the points named below (multiples of 50 or 60 Hz: hum), resonances of mounting "
         "and\n"
         "  cable, crosstalk, a delay between the channels (a phase that grows with frequency), an "

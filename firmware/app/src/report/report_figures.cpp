@@ -224,7 +224,7 @@ void write_known(const EvaluationResults& results, const EnergyUncertainty& know
 void write_figure(const EvaluationResults& results, const FigureResults& figure,
                   ReportWriter& out) noexcept {
   const double duration_s = results.settings.duration_s;
-  out.energy("E", figure.energy_v2s, kCoverageFactor * figure.uncertainty.u_v2s).line();
+  out.energy("E", figure.energy_v2s, figure.uncertainty.u_v2s).line();
   out.label("rms error sqrt(E/T)").general(sqrt(figure.energy_v2s / duration_s), 5);
   out.text(" V = ").general(results.percent_of(figure.energy_v2s), 4).text(" % of S a").line();
   write_switching_times(figure.switches, figure.times_s(), out);
@@ -510,7 +510,7 @@ void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noex
     out.part(ReportPart::kText)
         .text("  As above the gain follows S: an error of S is one of gain, and left out.\n");
   }
-  out.energy("Mean of E", known.mean_v2s, kCoverageFactor * known.u_v2s).text(" over ");
+  out.energy("Mean of E", known.mean_v2s, known.u_v2s).text(" over ");
   out.integer(known.trials).text(" trials").line();
   write_known(results, known, results.energy_v2s(), out);
   constexpr std::uint32_t kOnePercent = 100;

@@ -56,11 +56,10 @@ TextWriter& ReportWriter::quote(const char* words) noexcept {
   return one_line(words, kLabelShown);
 }
 
-TextWriter& ReportWriter::energy(const char* name, double energy_v2s,
-                                 double expanded_v2s) noexcept {
+TextWriter& ReportWriter::energy(const char* name, double energy_v2s, double u_v2s) noexcept {
   constexpr int kAll = 8;
-  const int known = decimals_of(expanded_v2s, 2) - decimals_of(energy_v2s, 1);
-  const bool is_short = rounds_to_u_ && expanded_v2s > 0.0 && known >= 0 && known < kAll;
+  const int known = decimals_of(kCoverageFactor * u_v2s, 2) - decimals_of(energy_v2s, 1);
+  const bool is_short = rounds_to_u_ && u_v2s > 0.0 && known >= 0 && known < kAll;
   return label(name).scientific(energy_v2s, is_short ? known : kAll).text(" V^2 s");
 }
 

@@ -37,8 +37,9 @@ class ReportWriter final : public TextWriter {
   bool rounds_to_u() const noexcept { return rounds_to_u_; }
   /// Text of its own, without marks.
   bool is_plain() const noexcept { return markup_ == nullptr; }
-  /// A label and its energy, with nine digits or those that its U carries where `rounds_to_u()`.
-  TextWriter& energy(const char* name, double energy_v2s, double expanded_v2s) noexcept;
+  /// A label and its energy, with nine digits or those that U = 2 u carries where
+  /// `rounds_to_u()`.
+  TextWriter& energy(const char* name, double energy_v2s, double u_v2s) noexcept;
   /// " (0.1057446 g)" behind an acceleration where that is asked for, else nothing.
   TextWriter& and_g(double acceleration_mps2, int digits) noexcept;
   /// " (10.16949 V/g)" behind a sensitivity.
