@@ -162,8 +162,9 @@ void append_ranking(std::string& html, const Comparison& comparison, const std::
                    {"Devices by rank with their errors",
                     "Each device's largest error with its expanded uncertainty, or its interval "
                     "where U says too little; a bar that ends at the left edge goes on to "
-                    "0. Bars that overlap much belong to devices that share their ranks; at the "
-                    "estimates the triangle is above every signal of any shape."},
+                    "0. Bars that overlap much belong to devices that share their ranks, and so do "
+                    "devices with a mark, whatever their bars; at the estimates the triangle is "
+                    "above every signal of any shape."},
                    1);
   }
   html += "</section>\n";

@@ -310,7 +310,8 @@ std::string open_damping_of(const Result& first, const Result& second, FigureKin
       words += interval_text(energy, FigureKind::kEnergy) + " V^2 s";
     }
   }
-  return words;
+  return words.empty() ? words
+                       : words + "; emax report --damping takes the one that a maker states";
 }
 
 // Of a difference to the first of two figures.
@@ -559,8 +560,8 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
   if (has_marks(comparison)) {
     legend.push_back({"mark",
                       "fit: chi-square of the fit warns; beta: its points leave the damping open, "
-                      "and the interval is the range of E; sim: the bench was simulated. Such a "
-                      "device is told apart from no other."});
+                      "and an interval of E is its range; sim: the bench was simulated. Such a "
+                      "device shares the rank of its neighbours, whatever its numbers."});
   }
   return legend;
 }

@@ -137,8 +137,8 @@ std::string range_of(const EvaluationResults& results) {
     return "not found";
   }
   const EnergyFormat format(results.cut_high_v2s, 0.0);
-  return format.number(results.cut_low_v2s) + " to " + format.number(results.cut_high_v2s) +
-         format.unit();
+  return "(" + format.number(results.cut_low_v2s) + " to " + format.number(results.cut_high_v2s) +
+         ")" + format.unit();
 }
 
 // With U, or with the interval where the figure is at one end of it.
@@ -160,10 +160,11 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
   std::string name = "Worst in-band error, with its delay";
   if (&figure == &results.matched) {
     const bool is_given = results.settings.delay_choice == app::DelayChoice::kGiven;
-    name =
-        std::string("Worst in-band error, ") +
-        (is_given ? "the given delay taken out" : "constant delay taken out") +
-        (results.is_one_sided(figure) ? "; the delay stays that of the estimate" : " (U, k = 2)");
+    name = std::string("Worst in-band error, ") +
+           (is_given ? "the given delay taken out" : "constant delay taken out") +
+           (results.is_one_sided(figure)  ? "; the delay stays that of the estimate"
+            : figure.uncertainty.exists() ? " (U, k = 2)"
+                                          : "");
   }
   append_figure(html, kind, name, value_of(results, figure.uncertainty, figure.energy_v2s));
 }
@@ -246,9 +247,9 @@ void append_uncertainty(std::string& html, const EvaluationResults& results) {
   const CoverageInterval interval = states_interval(results)
                                         ? app::widened(known.shortest, results.energy_v2s())
                                         : known.symmetric;
-  append_figure(
-      html, kMore, percent + " % coverage interval of E",
-      format.number(interval.low) + " to " + format.number(interval.high) + format.unit());
+  append_figure(html, kMore, percent + " % coverage interval of E",
+                "(" + format.number(interval.low) + " to " + format.number(interval.high) + ")" +
+                    format.unit());
 }
 
 void append_papers_maximum(std::string& html, const EvaluationResults& results) {
@@ -265,7 +266,8 @@ void append_papers_maximum(std::string& html, const EvaluationResults& results) 
 }
 
 void append_bound(std::string& html, const EvaluationResults& results) {
-  if (results.has_bound) {
+  // At the estimates proves nothing of a device whose damping is open.
+  if (results.has_bound && !results.is_damping_open()) {
     const EnergyFormat format(results.bound_v2s, 0.0);
     append_figure(
         html, kMore, "Proven at the estimates: no signal has more than",
