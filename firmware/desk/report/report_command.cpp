@@ -1,4 +1,5 @@
 // `emax report`.
+#include "desk/report/report_command.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -25,7 +26,6 @@
 #include "desk/files/report_files.hpp"
 #include "desk/files/single_file.hpp"
 #include "desk/files/text_file.hpp"
-#include "desk/page/certificate_part.hpp"
 #include "desk/page/certificate_part.hpp"
 #include "desk/report/bench_job.hpp"
 #include "desk/report/damping_words.hpp"

@@ -272,9 +272,9 @@ void write_budget(const SweepResults& sweep, const Wlsp* fit, ReportWriter& out)
       .integer(sweep.noise.dof)
       .text(
           " degrees of freedom, or a point's own if that is larger.\n"
-          "  Distortion: harmonics. Shared: drift, the drive's steps")
-      .text(fit != nullptr ? ", clock, crosstalk, linearity.\n"
-                           : "; no clock, crosstalk, linearity.\n")
+          "  Distortion: harmonics. Shared: drift, the drive's steps, squares of crosstalk")
+      .text(fit != nullptr ? ";\n  clock, crosstalk, linearity.\n"
+                           : ";\n  no clock, crosstalk, linearity.\n")
       .text(
           "  ADC step, distortion and drift are rectangular, the rest is normal: halves of the U "
           "stated.\n\n");
