@@ -218,6 +218,10 @@ Status EnergySearch::start(const ModalModel& model, const SearchSettings& settin
   shift_ = paper ? 0.0 : ascent_shift(model, settings.duration_s / static_cast<double>(cells));
   const double f0 = model.device().natural_frequency_hz;
   shortest_half_period_s_ = 0.5 / (f0 > 0.0 ? f0 : model.filter().band_hz);
+  rides_first_ =
+      f0 > 0.0 && model.device().damping <= kLightDamping &&
+      settings.duration_s >= static_cast<double>(kManySwitches) * shortest_half_period_s_;
+  best_start_ = 0;
   return look_at_one_sided(model);
 }
 
@@ -429,6 +433,9 @@ void EnergySearch::set_to_half_periods(double half_period_s, Signs signs) const 
 void EnergySearch::set_start(GridWorkspace& workspace) noexcept {
   const Signs signs = workspace.signs(cells_);
   std::size_t index = climbs_made_;
+  if (rides_first_ && index <= 1 + kColumnStarts) {
+    index = index == 0 ? 1 + kColumnStarts : index - 1;
+  }
   if (index == 0) {
     for (std::size_t i = 0; i < signs.size(); ++i) {
       signs.set(i, true);
@@ -634,6 +641,9 @@ void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
   has_refined_ = true;
   const double before = result_.energy;
   take(refined, refiner_.result().energy);
+  if (result_.energy > before + kSame * abs(before)) {
+    best_start_ = climbs_made_;
+  }
   // The grid has nothing more to offer.
   if (is_polishing() && !(result_.energy > before + kSame * abs(before))) {
     climbs_made_ = climbs_ - 1;
@@ -641,9 +651,16 @@ void EnergySearch::end_refinement(const SwitchingSignal& refined) noexcept {
   next_climb();
 }
 
+/// Whether further starts would add nothing to a signal that rides on the resonance.
+bool EnergySearch::is_enough() const noexcept {
+  return rides_first_ && climbs_made_ >= best_start_ + kEnoughStarts &&
+         result_.signal.count() >= kManySwitches;
+}
+
 void EnergySearch::next_climb() noexcept {
   if (is_start()) {
     ends_[climbs_made_] = end_;
+    climbs_made_ = is_enough() ? starts_ - 1 : climbs_made_;
   } else if (!is_polishing() && (climbs_made_ == starts_ || end_.energy > energy_to_beat_)) {
     energy_to_beat_ = end_.energy;
   }

@@ -127,6 +127,10 @@ static_assert(std::is_trivially_copyable_v<PulseTurn>);
 /// end of a run moves a switch. A climb that ends within 1 % of the highest one so far is refined
 /// in continuous time, in `double`.
 ///
+/// Where a resonance of light damping swings 50 times and more within T, its periodic signal is
+/// tried first. If the best signal then has kManySwitches, the starts are over once kEnoughStarts
+/// in a row have added nothing (`MaximumEnergy::starts` says how many were made).
+///
 /// Then 12 climbs, or 24, begin near the best signal: with its switches stretched so that one or
 /// two more or fewer fit in, or with a part of it turned or random. At last the best one goes back
 /// to the grid, which may have gains to offer again now that its switches have moved, up to 4
@@ -150,6 +154,12 @@ class EnergySearch {
   /// Climbs from the best signal with a stretch turned or made random; as many more for the energy
   /// difference.
   static constexpr std::size_t kKicks = 12;
+  /// Where the damping is at most this and the best signal switches at least so often, it rides on
+  /// the resonance: then the resonant start is the first one, and the starts are over as soon as so
+  /// many in a row add nothing.
+  static constexpr double kLightDamping = 0.05;
+  static constexpr std::size_t kManySwitches = 100;
+  static constexpr std::size_t kEnoughStarts = 4;
   static constexpr std::size_t kPolishings = 4;
 
   /// Lays out the grid. Model and settings must stay as they are until the search is done, and
@@ -245,6 +255,7 @@ class EnergySearch {
   bool is_worth_refining() const noexcept;
   void take(const SwitchingSignal& signal, double energy) noexcept;
   bool is_start() const noexcept { return climbs_made_ < starts_; }
+  bool is_enough() const noexcept;
   bool is_polishing() const noexcept { return climbs_made_ >= starts_ + kicks_; }
   Status look_at_one_sided(const ModalModel& model) noexcept;
   Status finish(const ModalModel& model) noexcept;
@@ -270,6 +281,8 @@ class EnergySearch {
   std::size_t climbs_ = 0;
   std::size_t starts_ = 0;
   std::size_t kicks_ = 0;
+  std::size_t best_start_ = 0;  // That led to the best signal
+  bool rides_first_ = false;    // The first start is the resonant one.
   std::size_t cells_ = 0;
   std::size_t tables_filled_ = 0;  // In cells
   std::size_t modes_ = 0;
