@@ -79,6 +79,14 @@ void stretch(double factor, double pulse_s, Span<double> scratch,
   (void)signal.set(scratch.first(count), duration_s);
 }
 
+/// Whether a signal has a good part of the switches that one at the resonance has. Others move
+/// little with it, and one leg does.
+bool is_resonant(const SwitchingSignal& signal, const Accelerometer& device) noexcept {
+  constexpr double kPart = 0.5;
+  return static_cast<double>(signal.count() + 1) >=
+         kPart * device.natural_frequency_hz * signal.duration_s();
+}
+
 bool is_inner(const CubePoint& point) noexcept {
   return abs(point[0]) <= kInner && abs(point[1]) <= kInner && abs(point[2]) <= kInner;
 }
@@ -437,7 +445,7 @@ void EnergyBranches::begin_legs(const Accelerometer& home, const Accelerometer& 
                                 GridWorkspace& workspace) noexcept {
   home_ = home;
   target_ = device;
-  legs_ = legs_between(home_, device);
+  legs_ = is_resonant(workspace.signal(), home_) ? legs_between(home_, device) : 1;
   if (legs_ > static_cast<std::size_t>(kMostLegs)) {
     stretch(home_.natural_frequency_hz / device.natural_frequency_hz,
             0.5 / device.natural_frequency_hz, workspace.refinement(), workspace.signal());
