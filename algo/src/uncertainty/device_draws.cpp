@@ -93,6 +93,14 @@ double DeviceDraws::row_sum(std::size_t parameter) const noexcept {
   return sum;
 }
 
+double DeviceDraws::spread(std::size_t parameter) const noexcept {
+  double squares = 0.0;
+  for (const double element : factor_[parameter]) {
+    squares += element * element;
+  }
+  return sqrt(squares);
+}
+
 double DeviceDraws::reach(double most) const noexcept { return reach_of(3, most); }
 
 double DeviceDraws::reach_without_damping(double most) const noexcept { return reach_of(2, most); }

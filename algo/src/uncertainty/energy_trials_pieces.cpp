@@ -1,4 +1,4 @@
-// Cuts the ranges of trials where the polynomials of the whole do not hold.
+// Cuts the ranges of trials where the polynomials of the whole do not hold, or lays a surface.
 #include <algorithm>
 
 #include "emax/uncertainty/energy_trials.hpp"
@@ -23,11 +23,47 @@ constexpr double kRough = 1e-4;
 
 }  // namespace
 
-TrialPieces::TrialPieces(Span<TrialPiece> memory) noexcept {
+TrialPieces::TrialPieces(Span<TrialPiece> memory, ResonanceSurface* surface) noexcept {
+  if (surface != nullptr) {
+    surface_ = surface;
+    prepare_surface_ = &EnergyTrials::prepare_surface;
+    ask_surface_ = &EnergyTrials::ask_surface;
+  }
   if (memory.size() >= EnergyTrials::kFirstPieces) {
     memory_ = memory;
     prepare_ = &EnergyTrials::prepare_pieces;
   }
+}
+
+/// A step of the surface; where it fails, branches begin.
+void EnergyTrials::prepare_surface(EnergyTrials& trials, EnergySearch& search,
+                                   GridWorkspace& workspace) noexcept {
+  ResonanceSurface& surface = *trials.surface_;
+  if (trials.surface_progress_ < 0.0) {
+    surface.start(trials.draws_, trials.search_.duration_s, trials.estimate_energy_);
+  }
+  surface.step(trials.draws_, trials.branches_, search, workspace);
+  trials.surface_progress_ = surface.progress();
+  if (surface.has_failed()) {
+    trials.surface_ = nullptr;
+    return;
+  }
+  trials.is_surface_ready_ = surface.is_done();
+  trials.surface_tolerance_ = surface.tolerance();
+  trials.surface_notes_.branches = 1;
+  trials.surface_notes_.predicted = 1;
+  trials.surface_notes_.is_surface = true;
+  trials.surface_notes_.rough_part = static_cast<float>(surface.rough_part());
+}
+
+double EnergyTrials::ask_surface(EnergyTrials& trials, const Accelerometer& device,
+                                 GridWorkspace& workspace) noexcept {
+  const ResonanceSurface& surface = *trials.surface_;
+  if (surface.reaches(device)) {
+    return surface.energy(device);
+  }
+  trials.set_model(device);
+  return resonant_energy(trials.model(), trials.search_.duration_s, workspace);
 }
 
 /// A step: of the first cut, if one is worth it, or of a piece.

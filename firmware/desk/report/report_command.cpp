@@ -124,8 +124,10 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
   }
   const std::unique_ptr<TrialPiece[]> pieces(new (std::nothrow)
                                                  TrialPiece[EnergyTrials::kManyPieces]);
+  const std::unique_ptr<ResonanceSurface> surface(new (std::nothrow) ResonanceSurface);
   if (pieces != nullptr) {
-    sequencer.lend_trial_pieces(TrialPieces({pieces.get(), EnergyTrials::kManyPieces}));
+    sequencer.lend_trial_pieces(
+        TrialPieces({pieces.get(), EnergyTrials::kManyPieces}, surface.get()));
   }
   ThreadHelper helper(options.threads);
   sequencer.lend_helper(&helper);

@@ -94,6 +94,8 @@ class DeviceDraws {
   double reach_without_damping(double most) const noexcept;
   /// What each unit of a place moves the damping by.
   Place units_of_damping() const noexcept { return {factor_[2][0], factor_[2][1], factor_[2][2]}; }
+  /// How far S, f0 or damping (0, 1, 2) goes: the half range of a box, else a standard deviation.
+  double spread(std::size_t parameter) const noexcept;
   /// Whether a unit moves a parameter; S is left out where a gain that follows takes it out.
   bool moves(std::size_t unit, bool without_sensitivity) const noexcept;
 

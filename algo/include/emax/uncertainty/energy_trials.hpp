@@ -10,6 +10,7 @@
 #include "emax/model/modal_model.hpp"
 #include "emax/uncertainty/device_draws.hpp"
 #include "emax/uncertainty/energy_branches.hpp"
+#include "emax/uncertainty/resonance_surface.hpp"
 
 namespace emax {
 
@@ -25,20 +26,24 @@ struct TrialPiece {
 
 class EnergyTrials;
 
-/// Memory for polynomials of parts of the ranges, and the code that makes them: an image where
-/// nobody makes one of these of memory has neither.
+/// Memory for polynomials of parts of the ranges and for a surface where signals ride on the
+/// resonance, and the code that makes them: an image where nobody makes one of these of memory has
+/// neither.
 class TrialPieces {
  public:
   /// None.
   constexpr TrialPieces() noexcept = default;
   /// @param memory `EnergyTrials::kFirstPieces` and more; 96 are enough for most. Fewer are none.
-  explicit TrialPieces(Span<TrialPiece> memory) noexcept;
+  explicit TrialPieces(Span<TrialPiece> memory, ResonanceSurface* surface = nullptr) noexcept;
 
  private:
   friend class EnergyTrials;
 
   Span<TrialPiece> memory_;
   void (*prepare_)(EnergyTrials&, GridWorkspace&) = nullptr;
+  ResonanceSurface* surface_ = nullptr;
+  void (*prepare_surface_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
+  double (*ask_surface_)(EnergyTrials&, const Accelerometer&, GridWorkspace&) = nullptr;
 };
 
 struct TrialSettings : DrawSettings {
@@ -68,6 +73,9 @@ struct TrialSettings : DrawSettings {
 /// more than 1/256 of the draws are in it and the pieces made so far have cost no more than a
 /// quarter of the refinements that they save, as the first trials show (or half a second on a PC,
 /// if that is more). What is left is refined.
+///
+/// Where the estimate's best signal has EnergySearch::kManySwitches and there is memory for a
+/// `ResonanceSurface`, a trial takes its value; branches come where the surface fails.
 ///
 /// With a gain that follows, the whole error system scales with S: the trial is done at the
 /// estimate's S and multiplied by the square of their ratio.
@@ -104,7 +112,9 @@ class EnergyTrials {
   /// @param workspace As for a search, without a store; once `ready()` there may be one in it.
   void prepare(EnergySearch& search, GridWorkspace& workspace) noexcept;
   bool ready() const noexcept {
-    return is_paper() || (branches_.is_ready() && (pieces_.empty() || is_cut()));
+    return is_paper() ||
+           (surface_ != nullptr ? is_surface_ready_
+                                : branches_.is_ready() && (pieces_.empty() || is_cut()));
   }
   /// @returns From 0 to 1, of the preparation.
   double progress() const noexcept;
@@ -158,6 +168,8 @@ class EnergyTrials {
   std::size_t cells() const noexcept { return cells_; }
   /// @returns With `ready()`, whether polynomials answer all trials within their reach.
   bool predicts() const noexcept;
+  /// @returns Whether trials are values of a surface.
+  bool has_surface() const noexcept { return surface_ != nullptr && is_surface_ready_; }
   /// @returns What a trial may be off by, as part of the energy.
   double tolerance() const noexcept;
   BranchNotes notes() const noexcept;
@@ -168,6 +180,11 @@ class EnergyTrials {
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
   bool is_cut() const noexcept { return pieces_begun_ != 0 && pieces_ready_ == pieces_used_; }
   static void prepare_pieces(EnergyTrials& trials, GridWorkspace& workspace) noexcept;
+  static void prepare_surface(EnergyTrials& trials, EnergySearch& search,
+                              GridWorkspace& workspace) noexcept;
+  static double ask_surface(EnergyTrials& trials, const Accelerometer& device,
+                            GridWorkspace& workspace) noexcept;
+  void find_on_surface(const Accelerometer& device, GridWorkspace& workspace) noexcept;
   void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
   void cut(TrialPiece& piece) noexcept;
@@ -182,6 +199,13 @@ class EnergyTrials {
   EnergyBranches branches_ = {};
   Span<TrialPiece> pieces_;
   void (*prepare_pieces_)(EnergyTrials&, GridWorkspace&) = nullptr;
+  ResonanceSurface* surface_ = nullptr;
+  void (*prepare_surface_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
+  double (*ask_surface_)(EnergyTrials&, const Accelerometer&, GridWorkspace&) = nullptr;
+  BranchNotes surface_notes_ = {};
+  double surface_tolerance_ = 0.0;
+  double estimate_energy_ = 0.0;
+  double surface_progress_ = 0.0;
   std::size_t pieces_used_ = 0;
   std::size_t work_of_pieces_ = 0;
   double work_saved_ = 0.0;  // By pieces, in refinements times switches, as the work of them.
@@ -200,6 +224,7 @@ class EnergyTrials {
   std::uint32_t rough_ = 0;
   bool gain_follows_ = false;
   bool is_exhausted_ = false;
+  bool is_surface_ready_ = false;
   bool done_ = false;
 };
 

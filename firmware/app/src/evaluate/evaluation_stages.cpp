@@ -464,7 +464,9 @@ void Evaluation::step_monte_carlo() noexcept {
     end_trials();
     return;
   }
-  work_.guard_.start(work_.trials_, result.trial_of_maximum);
+  work_.guard_.start(
+      work_.trials_, result.trial_of_maximum,
+      part.trials.has_surface() ? EnergyGuard::kSpreadOfFigure : EnergyGuard::kSpread);
   work_.progress_ = 0.0;
   results_.stage = Stage::kGuard;
 }
