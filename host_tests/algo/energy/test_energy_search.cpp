@@ -256,6 +256,37 @@ TEST(EnergySearch, ASecondRunEndsOnTheSameDigits) {
   EXPECT_EQ(search.result().energy, first);
 }
 
+// The energy is that of a square wave at the resonance, refined: another way to the same signal.
+TEST(EnergySearch, OnALightResonanceAFewStartsAreEnough) {
+  struct Case {
+    double damping;
+    bool is_light;
+  };
+  for (const Case& c : {Case{0.005, true}, Case{0.03, true}, Case{0.06, false}}) {
+    ModalModel model{};
+    ASSERT_EQ(model.set({1.0, 40000.0, c.damping}, {4, 1000.0, 1.0}, kIse), Status::kOk);
+    ASSERT_EQ(run(model, best_for(2e-3)), Status::kOk);
+    const MaximumEnergy found = search.result();
+    EXPECT_GE(found.signal.count(), EnergySearch::kManySwitches);
+    if (c.is_light) {
+      EXPECT_GT(found.starts, EnergySearch::kEnoughStarts);
+      EXPECT_LT(found.starts, EnergySearch::kStarts);
+    } else {
+      EXPECT_EQ(found.starts, EnergySearch::kStarts);
+    }
+    std::vector<double> times_s;
+    for (double time_s = 2e-3 - 0.5 * 1.25e-5; time_s > 0.0; time_s -= 1.25e-5) {
+      times_s.insert(times_s.begin(), time_s);
+    }
+    SwitchingSignal wave;
+    ASSERT_EQ(wave.set(Span<const double>(times_s.data(), times_s.size()), 2e-3), Status::kOk);
+    const double refined = refine(model, wave, workspace.refinement()).energy;
+    // A wave of another phase may end one switch apart, some 1e-4 below.
+    EXPECT_NEAR(found.energy, refined, 5e-4 * refined) << c.damping;
+    EXPECT_GE(found.energy, refined * (1.0 - 1e-12)) << c.damping;
+  }
+}
+
 TEST(EnergySearch, RefusesWhatItCannotDo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ModalModel model = paper_model();

@@ -49,6 +49,20 @@ void numbers(std::uint32_t trial, int redraw, double (&z)[3]) {
   z[2] = std::sqrt(-2.0 * std::log(u[2])) * std::cos(two_pi * u[3]);
 }
 
+TEST(DeviceDraws, SpreadIsTheHalfRangeOrTheStandardDeviation) {
+  DeviceDraws draws{};
+  ASSERT_EQ(draws.start(kPaperDevice, box(0.003, 6.0, 0.0004)), Status::kOk);
+  EXPECT_EQ(draws.spread(1), 6.0);
+  DrawSettings settings = normal(0.003, 6.0, 0.0004);
+  settings.covariance[0][1] = settings.covariance[1][0] = 0.5 * 0.003 * 6.0;
+  settings.covariance[1][2] = settings.covariance[2][1] = -0.3 * 6.0 * 0.0004;
+  ASSERT_EQ(draws.start(kPaperDevice, settings), Status::kOk);
+  // Whatever the correlations; to rounding of the root.
+  EXPECT_NEAR(draws.spread(0), 0.003, 1e-15);
+  EXPECT_NEAR(draws.spread(1), 6.0, 1e-12);
+  EXPECT_NEAR(draws.spread(2), 0.0004, 1e-15);
+}
+
 TEST(DeviceDraws, PlacesAreWhereTheDevicesLie) {
   DeviceDraws draws{};
   ASSERT_EQ(draws.start(kPaperDevice, box(0.003, 6.0, 0.0004)), Status::kOk);
