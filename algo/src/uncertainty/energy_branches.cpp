@@ -267,6 +267,13 @@ void EnergyBranches::next_place_of_seeds() noexcept {
   }
 }
 
+void EnergyBranches::stand_for_surface(double tolerance, double rough_part) noexcept {
+  tolerance_ = tolerance;
+  rough_part_ = rough_part;
+  degree_ = kFirstDegree;
+  phase_ = Phase::kReady;
+}
+
 double EnergyBranches::progress() const noexcept {
   // Searches take most of the time, and checks are a quarter of the rest.
   constexpr double kSearches = 0.6;

@@ -63,13 +63,9 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
   if (!pieces_.empty()) {
     branches_.expect_pieces();
   }
-  surface_ = is_paper() || best.signal.count() < EnergySearch::kManySwitches
-                 ? nullptr
-                 : settings.pieces.surface_;
-  prepare_surface_ = settings.pieces.prepare_surface_;
-  ask_surface_ = settings.pieces.ask_surface_;
-  surface_progress_ = -1.0;  // Not begun.
-  is_surface_ready_ = false;
+  surface_ = best.signal.count() < EnergySearch::kManySwitches ? nullptr : settings.pieces.surface_;
+  ask_ = nullptr;
+  has_begun_surface_ = false;
   estimate_energy_ = best.energy;
   pieces_used_ = 0;
   work_of_pieces_ = 0;
@@ -86,23 +82,16 @@ void EnergyTrials::prepare(EnergySearch& search, GridWorkspace& workspace) noexc
   if (ready()) {
     return;
   }
-  if (surface_ != nullptr) {
-    prepare_surface_(*this, search, workspace);
-    return;
-  }
-  if (!branches_.is_ready()) {
+  if (surface_ == nullptr && !branches_.is_ready()) {
     branches_.prepare(draws_, search, workspace);
     return;
   }
-  prepare_pieces_(*this, workspace);
+  prepare_pieces_(*this, search, workspace);
 }
 
 double EnergyTrials::progress() const noexcept {
   if (is_paper()) {
     return 1.0;
-  }
-  if (surface_ != nullptr) {
-    return surface_progress_ > 0.0 ? surface_progress_ : 0.0;
   }
   // Whether there will be pieces is known once the whole is ready.
   constexpr double kWhole = 0.5;
@@ -119,9 +108,6 @@ bool EnergyTrials::predicts() const noexcept {
   if (is_paper()) {
     return false;
   }
-  if (has_surface()) {
-    return true;
-  }
   bool all = pieces_used_ != 0;
   for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
     all = all && (piece.child != 0 || piece.branches.is_predicted());
@@ -130,9 +116,6 @@ bool EnergyTrials::predicts() const noexcept {
 }
 
 double EnergyTrials::tolerance() const noexcept {
-  if (has_surface()) {
-    return surface_tolerance_;
-  }
   double tolerance = pieces_used_ == 0 ? branches_.tolerance() : 0.0;
   for (const TrialPiece& piece : pieces_.first(pieces_used_)) {
     if (piece.child == 0 && piece.branches.tolerance() > tolerance) {
@@ -143,11 +126,6 @@ double EnergyTrials::tolerance() const noexcept {
 }
 
 BranchNotes EnergyTrials::notes() const noexcept {
-  if (has_surface()) {
-    BranchNotes notes = surface_notes_;
-    notes.rough_trials = rough_;
-    return notes;
-  }
   const auto rough_part = [](const BranchNotes& so_far, const EnergyBranches& branches) {
     const auto part = static_cast<float>(branches.rough_part());
     return part > so_far.rough_part ? part : so_far.rough_part;
@@ -239,7 +217,7 @@ double EnergyTrials::energy_of(const Accelerometer& device, GridWorkspace& works
     return run(workspace);
   }
   if (has_surface()) {
-    find_on_surface(device, workspace);
+    energy_ = ask_(*this, &device, workspace);
     return energy();
   }
   const DeviceDraws::Place place = draws_.place_of(device);
@@ -281,8 +259,8 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
     return;
   }
   if (has_surface()) {
-    rough_ += draws_.is_first_time() ? 1U : 0U;
-    find_on_surface(draws_.device(), workspace);
+    energy_ = ask_(*this, nullptr, workspace);
+    done_ = true;
     return;
   }
   EnergyBranches& branches = branches_at(draws_.place());
@@ -294,11 +272,6 @@ void EnergyTrials::begin(std::uint32_t trial, GridWorkspace& workspace) noexcept
     // Seldom, and only then needed.
     branches.begin_refinement(draws_, draws_.device(), workspace);
   }
-}
-
-void EnergyTrials::find_on_surface(const Accelerometer& device, GridWorkspace& workspace) noexcept {
-  energy_ = ask_surface_(*this, device, workspace);
-  done_ = true;
 }
 
 void EnergyTrials::begin_fixed_point(const Accelerometer& device,

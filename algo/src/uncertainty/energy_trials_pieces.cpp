@@ -24,50 +24,49 @@ constexpr double kRough = 1e-4;
 }  // namespace
 
 TrialPieces::TrialPieces(Span<TrialPiece> memory, ResonanceSurface* surface) noexcept {
-  if (surface != nullptr) {
-    surface_ = surface;
-    prepare_surface_ = &EnergyTrials::prepare_surface;
-    ask_surface_ = &EnergyTrials::ask_surface;
-  }
+  surface_ = surface;
+  prepare_ = &EnergyTrials::prepare_pieces;
   if (memory.size() >= EnergyTrials::kFirstPieces) {
     memory_ = memory;
-    prepare_ = &EnergyTrials::prepare_pieces;
   }
 }
 
 /// A step of the surface; where it fails, branches begin.
-void EnergyTrials::prepare_surface(EnergyTrials& trials, EnergySearch& search,
-                                   GridWorkspace& workspace) noexcept {
-  ResonanceSurface& surface = *trials.surface_;
-  if (trials.surface_progress_ < 0.0) {
-    surface.start(trials.draws_, trials.search_.duration_s, trials.estimate_energy_);
+void EnergyTrials::prepare_surface(EnergySearch& search, GridWorkspace& workspace) noexcept {
+  if (!has_begun_surface_) {
+    surface_->start(draws_, search_.duration_s, estimate_energy_);
+    has_begun_surface_ = true;
   }
-  surface.step(trials.draws_, trials.branches_, search, workspace);
-  trials.surface_progress_ = surface.progress();
-  if (surface.has_failed()) {
-    trials.surface_ = nullptr;
-    return;
+  surface_->step(draws_, branches_, search, workspace);
+  if (surface_->has_failed()) {
+    surface_ = nullptr;
+  } else if (surface_->is_done()) {
+    branches_.stand_for_surface(surface_->tolerance(), surface_->rough_part());
+    pieces_ = Span<TrialPiece>();
+    ask_ = &EnergyTrials::ask_surface;
   }
-  trials.is_surface_ready_ = surface.is_done();
-  trials.surface_tolerance_ = surface.tolerance();
-  trials.surface_notes_.branches = 1;
-  trials.surface_notes_.predicted = 1;
-  trials.surface_notes_.is_surface = true;
-  trials.surface_notes_.rough_part = static_cast<float>(surface.rough_part());
 }
 
-double EnergyTrials::ask_surface(EnergyTrials& trials, const Accelerometer& device,
+/// @param[in] device Null: the one drawn last.
+double EnergyTrials::ask_surface(EnergyTrials& trials, const Accelerometer* device,
                                  GridWorkspace& workspace) noexcept {
   const ResonanceSurface& surface = *trials.surface_;
-  if (surface.reaches(device)) {
-    return surface.energy(device);
+  trials.rough_ += device == nullptr && trials.draws_.is_first_time() ? 1U : 0U;
+  const Accelerometer asked = device == nullptr ? trials.draws_.device() : *device;
+  if (surface.reaches(asked)) {
+    return surface.energy(asked);
   }
-  trials.set_model(device);
+  trials.set_model(asked);
   return resonant_energy(trials.model(), trials.search_.duration_s, workspace);
 }
 
-/// A step: of the first cut, if one is worth it, or of a piece.
-void EnergyTrials::prepare_pieces(EnergyTrials& trials, GridWorkspace& workspace) noexcept {
+/// A step: of the surface, of the first cut, if one is worth it, or of a piece.
+void EnergyTrials::prepare_pieces(EnergyTrials& trials, EnergySearch& search,
+                                  GridWorkspace& workspace) noexcept {
+  if (trials.surface_ != nullptr) {
+    trials.prepare_surface(search, workspace);
+    return;
+  }
   if (trials.pieces_used_ == 0) {
     const EnergyBranches& whole = trials.branches_;
     if (whole.is_accurate() || whole.notes().degree == 0 || !trials.is_worth_pieces()) {

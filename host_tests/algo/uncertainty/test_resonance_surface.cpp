@@ -51,11 +51,9 @@ int prepare(const ModalModel& model, const TrialSettings& settings) {
   const MaximumEnergy best = searched(model);
   EXPECT_EQ(trials.start(model, best, settings), Status::kOk);
   int steps = 0;
-  double before = 0.0;
   for (; !trials.ready(); ++steps) {
+    EXPECT_FALSE(trials.has_surface());
     trials.prepare(search, workspace);
-    EXPECT_GE(trials.progress(), before);
-    before = trials.has_surface() || steps == 0 ? trials.progress() : before;
   }
   return steps;
 }
@@ -117,6 +115,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Sensor{{0.0102, 30000.0, 0.017}, Distribution::kNormal, 500.0, 0.0073, 45},
                     Sensor{{0.0102, 55000.0, 0.03}, Distribution::kBox, 2500.0, 0.014, 33},
                     Sensor{{0.0102, 50000.0, 0.02}, Distribution::kNormal, 0.0, 0.006, 21}));
+
+// Memory that others have left in the middle of their work is begun anew.
+TEST(ResonanceSurface, IsTheSameInMemoryThatWasInUse) {
+  const Accelerometer device = {0.0102, 30000.0, 0.017};
+  TrialSettings settings = settings_for(device, Distribution::kNormal, 500.0, 0.0073);
+  settings.pieces = TrialPieces({}, &surface);
+  const ModalModel model = model_of(device);
+  surface = ResonanceSurface();
+  const int steps = prepare(model, settings);
+  const double energy = trials.energy(7, workspace);
+  ASSERT_EQ(trials.start(model, searched(model), settings), Status::kOk);
+  double before = surface.progress();
+  for (int step = 0; step < 20; ++step) {
+    trials.prepare(search, workspace);
+    EXPECT_TRUE(step == 0 || surface.progress() > before) << step;
+    before = surface.progress();
+  }
+  EXPECT_EQ(prepare(model, settings), steps);
+  EXPECT_EQ(trials.energy(7, workspace), energy);
+}
 
 // What lies outside the nodes is refined: f0 by 6 standard deviations, where the nodes end at 4.5.
 TEST(ResonanceSurface, OutsideItsNodesTheSignalIsRefined) {

@@ -26,7 +26,6 @@ struct BranchNotes {
   std::uint8_t unsearched = 0;  ///< Places where the search failed: too many cells or switches.
   std::uint8_t pieces = 0;      ///< Parts of the ranges with branches of their own; 0 if not cut.
   std::uint8_t pieces_predicted = 0;  ///< Of them, where all branches have polynomials.
-  bool is_surface = false;            ///< Trials are values of a `ResonanceSurface`.
   bool is_crowded = false;            ///< A signal that might matter found no room.
   /// Trials by polynomials that are not accurate to 1e-6 of u(E), and what those may be off by as
   /// part of u(E).
@@ -93,6 +92,10 @@ class EnergyBranches {
   /// A step of a refinement. @param[in] whole The same in each call, as the others.
   void prepare_piece(const EnergyBranches& whole, const DeviceDraws& draws,
                      GridWorkspace& workspace) noexcept;
+
+  /// Ends the preparation with what is known of a surface in place of polynomials: energies are not
+  /// to be asked for here.
+  void stand_for_surface(double tolerance, double rough_part) noexcept;
 
   /// @returns From 0 to 1, of the preparation.
   double progress() const noexcept;

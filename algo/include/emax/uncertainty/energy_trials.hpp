@@ -40,10 +40,8 @@ class TrialPieces {
   friend class EnergyTrials;
 
   Span<TrialPiece> memory_;
-  void (*prepare_)(EnergyTrials&, GridWorkspace&) = nullptr;
+  void (*prepare_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
   ResonanceSurface* surface_ = nullptr;
-  void (*prepare_surface_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
-  double (*ask_surface_)(EnergyTrials&, const Accelerometer&, GridWorkspace&) = nullptr;
 };
 
 struct TrialSettings : DrawSettings {
@@ -112,9 +110,7 @@ class EnergyTrials {
   /// @param workspace As for a search, without a store; once `ready()` there may be one in it.
   void prepare(EnergySearch& search, GridWorkspace& workspace) noexcept;
   bool ready() const noexcept {
-    return is_paper() ||
-           (surface_ != nullptr ? is_surface_ready_
-                                : branches_.is_ready() && (pieces_.empty() || is_cut()));
+    return is_paper() || (branches_.is_ready() && (pieces_.empty() || is_cut()));
   }
   /// @returns From 0 to 1, of the preparation.
   double progress() const noexcept;
@@ -169,7 +165,7 @@ class EnergyTrials {
   /// @returns With `ready()`, whether polynomials answer all trials within their reach.
   bool predicts() const noexcept;
   /// @returns Whether trials are values of a surface.
-  bool has_surface() const noexcept { return surface_ != nullptr && is_surface_ready_; }
+  bool has_surface() const noexcept { return ask_ != nullptr; }
   /// @returns What a trial may be off by, as part of the energy.
   double tolerance() const noexcept;
   BranchNotes notes() const noexcept;
@@ -179,12 +175,11 @@ class EnergyTrials {
 
   bool is_paper() const noexcept { return search_.method == Method::kPaper; }
   bool is_cut() const noexcept { return pieces_begun_ != 0 && pieces_ready_ == pieces_used_; }
-  static void prepare_pieces(EnergyTrials& trials, GridWorkspace& workspace) noexcept;
-  static void prepare_surface(EnergyTrials& trials, EnergySearch& search,
-                              GridWorkspace& workspace) noexcept;
-  static double ask_surface(EnergyTrials& trials, const Accelerometer& device,
+  static void prepare_pieces(EnergyTrials& trials, EnergySearch& search,
+                             GridWorkspace& workspace) noexcept;
+  static double ask_surface(EnergyTrials& trials, const Accelerometer* device,
                             GridWorkspace& workspace) noexcept;
-  void find_on_surface(const Accelerometer& device, GridWorkspace& workspace) noexcept;
+  void prepare_surface(EnergySearch& search, GridWorkspace& workspace) noexcept;
   void begin_pieces() noexcept;
   void prepare_piece(GridWorkspace& workspace) noexcept;
   void cut(TrialPiece& piece) noexcept;
@@ -198,14 +193,11 @@ class EnergyTrials {
 
   EnergyBranches branches_ = {};
   Span<TrialPiece> pieces_;
-  void (*prepare_pieces_)(EnergyTrials&, GridWorkspace&) = nullptr;
-  ResonanceSurface* surface_ = nullptr;
-  void (*prepare_surface_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
-  double (*ask_surface_)(EnergyTrials&, const Accelerometer&, GridWorkspace&) = nullptr;
-  BranchNotes surface_notes_ = {};
-  double surface_tolerance_ = 0.0;
+  void (*prepare_pieces_)(EnergyTrials&, EnergySearch&, GridWorkspace&) = nullptr;
+  ResonanceSurface* surface_ = nullptr;  // That is to be laid.
+  // With a surface that is laid: the energy of a device, or of the one drawn last.
+  double (*ask_)(EnergyTrials&, const Accelerometer*, GridWorkspace&) = nullptr;
   double estimate_energy_ = 0.0;
-  double surface_progress_ = 0.0;
   std::size_t pieces_used_ = 0;
   std::size_t work_of_pieces_ = 0;
   double work_saved_ = 0.0;  // By pieces, in refinements times switches, as the work of them.
@@ -224,7 +216,7 @@ class EnergyTrials {
   std::uint32_t rough_ = 0;
   bool gain_follows_ = false;
   bool is_exhausted_ = false;
-  bool is_surface_ready_ = false;
+  bool has_begun_surface_ = false;
   bool done_ = false;
 };
 
