@@ -64,6 +64,7 @@ Status EnergyTrials::start(const ModalModel& at_estimate, const MaximumEnergy& b
     branches_.expect_pieces();
   }
   surface_ = best.signal.count() < EnergySearch::kManySwitches ? nullptr : settings.pieces.surface_;
+  most_trials_ = std::numeric_limits<std::uint32_t>::max();
   ask_ = nullptr;
   has_begun_surface_ = false;
   estimate_energy_ = best.energy;

@@ -16,6 +16,9 @@ constexpr double kMostWorkOfPieces = 2.5e5;
 /// The parts of what they save that they are worth.
 constexpr double kWorthOfFirst = 0.1;
 constexpr double kWorthOfPieces = 0.25;
+/// The refinements times switches that all trials together are worth: 0.3 s on a PC.
+constexpr double kMostWorkOfTrials = 3e4;
+constexpr double kLeastWork = 1e-3;
 /// So many trials show how many are refined.
 constexpr std::uint32_t kTried = 256;
 /// From this part of the standard deviation on a polynomial of the whole ranges is worth a cut.
@@ -71,6 +74,7 @@ void EnergyTrials::prepare_pieces(EnergyTrials& trials, EnergySearch& search,
     const EnergyBranches& whole = trials.branches_;
     if (whole.is_accurate() || whole.notes().degree == 0 || !trials.is_worth_pieces()) {
       trials.pieces_ = Span<TrialPiece>();
+      trials.limit_trials();
       return;
     }
     trials.begin_pieces();
@@ -93,14 +97,15 @@ bool EnergyTrials::is_worth_pieces() noexcept {
   return static_cast<double>(work) <= std::max(kMostWorkOfFirst, kWorthOfFirst * work_saved_);
 }
 
-/// The part of the trials that is refined without pieces.
+/// The part of the trials that is refined with what is ready.
 double EnergyTrials::refined_part() noexcept {
   DeviceDraws draws = draws_;
   std::uint32_t refined = 0;
   for (std::uint32_t trial = 0; trial < kTried; ++trial) {
     if (draws.draw(trial)) {
-      branches_.begin(draws.place());
-      refined += branches_.done() ? 0U : 1U;
+      EnergyBranches& branches = branches_at(draws.place());
+      branches.begin(draws.place());
+      refined += branches.done() ? 0U : 1U;
     }
   }
   return static_cast<double>(refined) / static_cast<double>(kTried);
@@ -136,7 +141,19 @@ void EnergyTrials::prepare_piece(GridWorkspace& workspace) noexcept {
   if (is_worth_cutting(piece)) {
     cut(piece);
   }
-  ++pieces_ready_;
+  if (++pieces_ready_ == pieces_used_) {
+    limit_trials();
+  }
+}
+
+/// Few enough that those of them that are refined take a fraction of a second on a PC.
+void EnergyTrials::limit_trials() noexcept {
+  if (predicts()) {
+    return;
+  }
+  const double work = refined_part() * static_cast<double>(branches_.most_switches() + 1);
+  const double most = kMostWorkOfTrials / std::max(work, kLeastWork);
+  most_trials_ = std::max(static_cast<std::uint32_t>(most), kFewestTrials);
 }
 
 bool EnergyTrials::is_worth_cutting(const TrialPiece& piece) const noexcept {

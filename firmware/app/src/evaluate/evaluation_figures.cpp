@@ -285,7 +285,9 @@ void Evaluation::step_figure_prediction() noexcept {
   }
   const Settings& settings = results_.settings;
   work_.grid_.share_with_store();
-  work_.trials_ = settings.adaptive ? results_.adaptive.trials : settings.trials;
+  const std::uint32_t wanted = settings.adaptive ? results_.adaptive.trials : settings.trials;
+  const std::uint32_t most = part.trials.most_trials();
+  work_.trials_ = wanted < most ? wanted : most;
   const Status status =
       part.monte_carlo.start(work_.trials_, settings.probability, work_.grid_.store());
   if (status != Status::kOk) {

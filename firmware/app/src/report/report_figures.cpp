@@ -201,6 +201,20 @@ void write_interval(const char* name, const CoverageInterval& interval, double p
   out.general(kPercent * probability, 6).text(" %)").line();
 }
 
+/// How many trials there were where they are fewer than asked for, and what that leaves open: the
+/// part of the energies that is within the ends has the standard deviation of a binomial share.
+void write_fewer_trials(const EvaluationResults& results, const EnergyUncertainty& known,
+                        ReportWriter& out) noexcept {
+  if (!results.has_fewer_trials(known)) {
+    return;
+  }
+  const double p = results.settings.probability;
+  const double u = sqrt(p * (1.0 - p) / static_cast<double>(known.trials));
+  out.label("Trials").integer(known.trials).text(", as many take a refinement; ");
+  out.general(kPercent * p, 6).text(" % is within ");
+  out.general(kPercent * kCoverageFactor * u, 2).text(" % (k = 2)").line();
+}
+
 /// u, U and both intervals; or without U the interval that stands in its place, as in the figures.
 void write_known(const EvaluationResults& results, const EnergyUncertainty& known,
                  double energy_v2s, ReportWriter& out) noexcept {
@@ -217,6 +231,7 @@ void write_known(const EvaluationResults& results, const EnergyUncertainty& know
   write_interval(has_expanded ? "Shortest interval" : "Interval, in place of U",
                  has_expanded ? known.shortest : widened(known.shortest, energy_v2s), probability,
                  out);
+  write_fewer_trials(results, known, out);
   write_guard(known.guard, out);
   write_rough_trials(known.rough_trials, known.rough_part, out);
 }

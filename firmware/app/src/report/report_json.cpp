@@ -317,6 +317,14 @@ void write_disagreements(const GuardResults& guard, JsonWriter& json) noexcept {
   }
 }
 
+/// The number of trials, where it is not the one asked for.
+void write_fewer_trials(const EvaluationResults& results, const EnergyUncertainty& known,
+                        JsonWriter& json) noexcept {
+  if (results.has_fewer_trials(known)) {
+    json.integer("trials", known.trials);
+  }
+}
+
 /// What the report states in the place of +-U; null where U is the one to use.
 void write_instead_of_u(const EvaluationResults& results, const EnergyUncertainty& known,
                         double energy_v2s, JsonWriter& json) noexcept {
@@ -339,6 +347,7 @@ void write_figure_uncertainty(const EvaluationResults& results, const FigureResu
     }
     return;
   }
+  write_fewer_trials(results, known, json);
   json.number("u", known.u_v2s);
   json.number("U", kCoverageFactor * known.u_v2s);
   json.pair("interval", known.symmetric.low, known.symmetric.high);
@@ -417,6 +426,7 @@ void write_uncertainty(const EvaluationResults& results, JsonWriter& json) noexc
   json.open("uncertainty");
   json.words("distribution", "normal");
   json.number("probability", results.settings.probability);
+  write_fewer_trials(results, known, json);
   json.number("u", known.u_v2s);
   json.number("U", kCoverageFactor * known.u_v2s);
   json.pair("interval", known.symmetric.low, known.symmetric.high);

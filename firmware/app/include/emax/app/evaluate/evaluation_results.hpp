@@ -269,6 +269,12 @@ struct EvaluationResults {
                                        double energy_v2s) const noexcept;
   /// @returns Whether that interval has to stand in the place of +-U.
   bool is_one_sided(const EnergyUncertainty& known, double energy_v2s) const noexcept;
+  /// @returns Whether an uncertainty that exists is that of fewer trials than asked for, as many of
+  /// them take a refinement (`EnergyTrials::most_trials()`).
+  bool has_fewer_trials(const EnergyUncertainty& known) const noexcept {
+    return known.trials != 0 &&
+           known.trials < (settings.adaptive ? adaptive.trials : settings.trials);
+  }
   bool is_one_sided(const FigureResults& figure) const noexcept {
     return is_one_sided(figure.uncertainty, figure.energy_v2s);
   }
