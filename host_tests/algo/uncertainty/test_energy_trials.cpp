@@ -1,6 +1,7 @@
 // Trials of the Monte Carlo procedure: their draws, their order, and the energy they find.
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <vector>
 
 #include "emax/energy/refinement.hpp"
@@ -86,6 +87,15 @@ TEST(EnergyTrials, DoNotDependOnTheirOrder) {
     EXPECT_EQ(trials.energy(t, workspace), forward[t]);
   }
   EXPECT_EQ(trials.energy(17, workspace), forward[17]);
+}
+
+TEST(EnergyTrials, AreAsManyAsWantedWherePolynomialsAnswerThem) {
+  std::vector<TrialPiece> pieces(EnergyTrials::kManyPieces);
+  TrialSettings settings = settings_for(Method::kBest, 2e-3);
+  settings.pieces = TrialPieces({pieces.data(), pieces.size()});
+  ASSERT_EQ(start(settings, paper_model()), Status::kOk);
+  EXPECT_TRUE(trials.predicts());
+  EXPECT_EQ(trials.most_trials(), std::numeric_limits<std::uint32_t>::max());
 }
 
 TEST(EnergyTrials, FindWhatAFullSearchOfThatDeviceFinds) {
@@ -316,6 +326,8 @@ TEST(EnergyTrials, AreWorthTheMorePiecesTheMoreThereAre) {
   ASSERT_EQ(start(settings, model), Status::kOk);
   EXPECT_EQ(trials.notes().pieces, 0);
   EXPECT_EQ(refined(), kLooked);
+  // 275 refinements of 109 switches would be worth it.
+  EXPECT_EQ(trials.most_trials(), EnergyTrials::kFewestTrials);
   const double work_of_trial = static_cast<double>(trials.work()) / 32.0;  // 32 for a switch.
 
   settings.expected_trials = 12000;
@@ -326,6 +338,7 @@ TEST(EnergyTrials, AreWorthTheMorePiecesTheMoreThereAre) {
   expect_cuts_within(0.25 * saved, 0.0, {pieces.data(), pieces.size()});
   EXPECT_GE(trials.notes().pieces, EnergyTrials::kFirstPieces);
   EXPECT_LT(refined(), kLooked / 4);
+  EXPECT_GE(trials.most_trials(), EnergyTrials::kFewestTrials);
   for (std::uint32_t t = 0; t < 4; ++t) {
     const double found = trials.energy(t, workspace);
     const double expected = full_search(model, trials.device(t), settings);

@@ -390,6 +390,25 @@ TEST(Report, TrialsThatAreTooRoughAreAWarning) {
   EXPECT_TRUE(says(report_of(results), "WARNING: u(E) may be off in its second digit"));
 }
 
+// 95 % of 7500 trials: the standard deviation of their share is sqrt(0.95 0.05/7500) = 0.25 %.
+TEST(Report, FewerTrialsThanAskedForAreSaidToBe) {
+  Settings settings = quick_settings();
+  settings.probability = 0.95;
+  settings.trials = 20000;
+  (void)evaluated(kTable2, settings);
+  EvaluationResults& results = emax::test::shared_evaluation();
+  EXPECT_FALSE(says(report_of(results), "take a refinement"));
+  emax::app::EnergyUncertainty* const all[] = {&results.uncertainty, &results.band.uncertainty,
+                                               &results.matched.uncertainty};
+  for (emax::app::EnergyUncertainty* known : all) {
+    const std::uint32_t made = known->trials;
+    known->trials = 7500;
+    EXPECT_TRUE(says(report_of(results),
+                     "7500, as many take a refinement; 95 % is within 0.5 % (k = 2)\n"));
+    known->trials = made;
+  }
+}
+
 TEST(Report, ALineThatDescribesNothingIsNoted) {
   Settings settings = quick_settings();
   settings.trend_count = 3;
