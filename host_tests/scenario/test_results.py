@@ -282,8 +282,8 @@ class FigureValues(ProgramTest):
         self.assertNotRegex(page, r"[ >]0\.0+ %")
 
     def test_guard_of_a_figure_in_band_is_told_there(self):
-        found = self.json_of("--model", "0.0102,50000,0.02,0.0001,200,0.002", "--gain", "0.0102", "--trials", "2000",
-                             "--trend", "none")
+        found = self.json_of("--model", "0.0102,50000,0.02,0.0001,200,0.004", "--gain", "0.0102", "--trials", "2000",
+                             "--time", "0.003", "--trend", "none")
         self.assertGreater(found["band"]["disagreements"], 0, "what this is about")
         self.assertEqual(found["monte_carlo"]["disagreements"], 0)
         self.assertEqual([w["about"] for w in found["warnings"] if "full search" in w["text"]], ["band"])
