@@ -674,7 +674,7 @@ class Page(PageTest, ProgramTest):
         # U is 2.2e-5 V^2 s: two digits of it are three decimals here.
         self.assertEqual(headline[4], f"({1e3 * energy['E']:.3f} ± {1e3 * known['U']:.3f}) × 10−3 V² s")
         low, high = (f"{1e3 * value:.3f}" for value in known["interval"])
-        self.assertEqual(headline[5], f"{low} to {high} × 10−3 V² s")
+        self.assertEqual(headline[5], f"({low} to {high}) × 10−3 V² s")
         self.assertEqual(headline[6], f"{math.ceil(1e7 * energy['bound']) / 1e4:.4f} × 10−3 V² s")  # Not below it.
         self.assertEqual(headline[7], f"{1e3 * results['monte_carlo']['E_max']:.3f} × 10−3 V² s")
         self.assertEqual(len(headline), 8)
