@@ -15,7 +15,7 @@ set(EMAX_BOARD_COMMON ${EMAX_BOARDS}/common)
 #   BUDGET <flash> <ram> <stack>  The most bytes that an image may take, for the gates. Flash is code, constants and what
 #                          variables start with; RAM is all variables, without the stack and without what stands in for a
 #                          flash memory of records; stack is the deepest that the call graph proves, interrupts and faults
-#                          included. Without it: 294912 122880 8192, a chip with 128 KiB of RAM.
+#                          included. Without it: 286720 122880 8192, a chip with 128 KiB of RAM.
 #   INTERRUPT_LEVELS <handlers>...  For each level of priority one text with the interrupt handlers that never interrupt one
 #                          another, as "*::on_console *::on_clock", with * for any characters. The proof of the stack takes
 #                          handlers of a Cortex-M that are in no text for ones that interrupt all others: their stacks add
@@ -58,7 +58,7 @@ function(emax_declare_board)
     endif()
   endforeach()
   if(NOT arg_BUDGET)
-    set(arg_BUDGET 294912 122880 8192)
+    set(arg_BUDGET 286720 122880 8192)
   endif()
   if(NOT "${arg_BUDGET}" MATCHES "^[0-9]+;[0-9]+;[0-9]+$")
     message(FATAL_ERROR "${file}: BUDGET takes three numbers, of bytes of flash, RAM and stack")

@@ -7,7 +7,7 @@ emax_declare_board(
   INTERRUPTS 150
   INTERRUPT_LEVELS ${EMAX_STM32_INTERRUPT_LEVELS}
   # As much for the program as on the other boards, and 4 KiB elsewhere for DMA's buffers.
-  BUDGET 294912 126976 8192
+  BUDGET 286720 126976 8192
   WATCHDOG
   FLASH openocd -f board/st_nucleo_h743zi.cfg -c "program @IMAGE@ verify reset exit"
   CORE_TITLE STM32H743
