@@ -98,7 +98,7 @@ class EnergyFormat {
 
   std::string unit() const {
     const std::string power = (exponent_ < 0 ? "−" : "") + std::to_string(std::abs(exponent_));
-    return (exponent_ == 0 ? "" : "&nbsp;×&nbsp;10<sup>" + power + "</sup>") + "&nbsp;V²&nbsp;s";
+    return (exponent_ == 0 ? "" : " ×&nbsp;10<sup>" + power + "</sup>") + "&nbsp;V²&nbsp;s";
   }
 
  private:

@@ -77,7 +77,7 @@ figure { margin: 1.2rem 0; }
 figure svg { display: block; width: 100%; height: auto; background: #ffffff; color: #000000; }
 @media screen and (prefers-color-scheme: dark) {
   /* White paper becomes dark, and hues stay what they are. */
-  figure svg { filter: invert(.92) hue-rotate(180deg); }
+  figure svg { filter: invert(.914) hue-rotate(180deg); }
 }
 figcaption { margin-top: .4rem; color: var(--soft); font-size: .92rem; }
 a { color: inherit; }
@@ -88,6 +88,9 @@ footer { margin-top: 2.5rem; padding-top: .6rem; border-top: 1px solid var(--lin
   .rows td { padding-bottom: .5rem; }
   figure { overflow-x: auto; }
   figure svg { min-width: 36rem; }
+  .numbers { font-size: .8rem; }
+  .numbers th, .numbers td { padding: .12rem .3rem; }
+  #figures .numbers :is(thead th, :is(th, td):first-child) { white-space: normal; }
 }
 @page { size: A4; margin: 13mm 15mm 16mm; }
 @media print {

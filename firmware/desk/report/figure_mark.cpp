@@ -1,6 +1,7 @@
 // What the star at the figures of a report means.
 #include "desk/report/figure_mark.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include "emax/app/base/text_writer.hpp"
@@ -86,6 +87,7 @@ FigureMark mark_of_figures(const app::EvaluationResults& results,
     if (about(warning) != last) {
       last = about(warning);
       topics += (topics.empty() ? "" : ", ") + std::string(last);
+      std::replace(topics.begin(), topics.end(), '_', ' ');  // As the JSON names them.
     }
   }
   if (!topics.empty()) {

@@ -28,9 +28,9 @@ class EnergyGuard {
   static constexpr std::uint32_t kSearches = kSpread + 1;
   /// Where several figures are guarded, each by this many and its largest.
   static constexpr std::uint32_t kSpreadOfFigure = 4;
-  /// A search disagrees if its energy is above the trial's by more than this part of it, and more
-  /// than twice the trials' own tolerance.
-  static constexpr double kTolerance = 1e-9;
+  /// A search disagrees if its energy is above the trial's by more than this part of it, a few of
+  /// the ninth digit, which is the last one printed, and more than twice the trials' own tolerance.
+  static constexpr double kTolerance = 1e-8;
 
   /// Starts over.
   ///
