@@ -3,6 +3,7 @@
 usage: test_pictures.py PROGRAM DATA_DIRECTORY [unittest arguments]
 """
 
+import cmath
 import collections
 import contextlib
 import csv
@@ -220,6 +221,17 @@ class Pictures(PictureTest, ProgramTest):
                 self.assertNotIn("<script", svg)
                 references = set(re.findall(r"""href=['"]([^'"]*)""", svg))
                 self.assertTrue(all(address.startswith("#") for address in references), references)
+
+    def test_axes_of_any_sensitivity_have_their_names(self):
+        """gnuplot leaves a name out where the numbers beside it need its room."""
+        for sensitivity in [0.0102, 0.1037, 1.0371, 9.871]:
+            rows = ["f_hz,amplitude,phase_deg,u_amplitude,u_phase_deg"]
+            for frequency in [20, 80, 160, 315, 630, 1250, 2500, 4000, 5000]:
+                ratio = 1 / (1 - (frequency / 30000) ** 2 + 2j * 0.05 * frequency / 30000)
+                rows.append(f"{frequency},{abs(ratio) * sensitivity:.9g},{math.degrees(cmath.phase(ratio)):.7g},{sensitivity / 100:.4g},0.5")
+            self.write(rows, name="points.csv")
+            self.report("--points", "points.csv", "--limit", "1", *QUICK)
+            self.assertIn("V/(m/s²)", " ".join(text for text in texts_of(self.out("frequency_response.svg")) if text.startswith("amplitude in")))
 
     def test_script_gives_the_same_again(self):
         self.report(*TREND, "--device", NASTY["device"])

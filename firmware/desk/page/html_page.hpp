@@ -22,7 +22,7 @@ struct PagePicture {
 ///
 /// @param[in] results    With the stage kDone.
 /// @param[in] pictures   Empty if there are none; the page says so then.
-void write_page(const app::EvaluationResults& results, const app::ReportContext& context,
+void write_page(const app::EvaluationResults& results, const app::ReportContext& given,
                 const std::vector<PagePicture>& pictures, app::TextWriter& out);
 
 /// The same for a measurement that led to no result; `context` has the measurement.

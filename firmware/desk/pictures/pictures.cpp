@@ -306,10 +306,13 @@ void write_frequency_response(const Picture& picture, const EvaluationResults& r
                               TextWriter& out) {
   const Accelerometer& device = results.device.estimate;
   constexpr double kPlain = 0.01;
+  // Numbers such as 0.0107 leave no room for the name of the axis.
+  constexpr double kWithoutWideTicks = 0.1;
   const ResponseRange range = range_of(results);
   const bool is_logarithmic = spans_much(range);
-  const Scale response =
-      is_logarithmic ? Scale{1.0, "V/(m/s²)"} : scaled(range.largest_amplitude, "V/(m/s²)", kPlain);
+  const Scale response = is_logarithmic
+                             ? Scale{1.0, "V/(m/s²)"}
+                             : scaled(range.largest_amplitude, "V/(m/s²)", kWithoutWideTicks);
   const Scale percent = scaled(kPercent * range.amplitude_deviation, "%", kPlain);
   const Scale degrees = scaled(kDegreesPerRadian * range.phase_deviation_rad, "°", kPlain);
   write_start(out, picture, 670);
@@ -318,7 +321,7 @@ void write_frequency_response(const Picture& picture, const EvaluationResults& r
   write_value(out, "beta", device.damping);
   out.text("amplitude(f) = S/sqrt((1 - (f/f0)**2)**2 + (2*beta*f/f0)**2)\n");
   out.text("phase(f) = -atan2(2*beta*f/f0, 1 - (f/f0)**2)*180/pi\n");
-  out.text("set multiplot layout 2,2 columnsfirst margins 0.1,0.98,0.15,0.84 spacing 0.12,0.05 ")
+  out.text("set multiplot layout 2,2 columnsfirst margins 0.12,0.98,0.15,0.84 spacing 0.12,0.05 ")
       .text("title ");
   const std::string title =
       title_lines(picture.title, parameters_of(results), fit_quality_of(results));
