@@ -92,6 +92,38 @@ def run_report(*arguments, program: str | None = None, **options) -> dict:
     return with_arrays(json.loads(run("report", *arguments, *option_words(options), "--json", program=program)))
 
 
+def figures(result: dict) -> dict:
+    """The figures of a result as numbers, NaN for each that does not exist, so that sensors can be put into one array.
+
+    S, f0, beta       V/(m/s^2), Hz, 1
+    E, E_low, E_high  The largest energy found and its 95 % interval, V^2 s; where the points leave beta open, its range
+                      over the dampings that a device may have.
+    error, error_low, error_high
+                      The in-band error in % of S a, the constant delay taken out where that exists, with U (k = 2) on
+                      both sides, or the interval in the place of U.
+    warnings          How many there are, but for the one on fewer trials than rule (3) asks for.
+    """
+    nothing = (numpy.nan, numpy.nan)
+    model, energy = result["model"], result["energy"] or {}
+    fit, uncertainty = result.get("fit") or {}, result["uncertainty"] or {}
+    band = result["band"] or {}
+    figure = band.get("matched") or band
+    error, u = figure.get("rms_percent", numpy.nan), figure.get("U_percent")
+    interval = figure.get("instead_of_U_percent")
+    if interval is None:
+        interval = nothing if u is None else (error - u, error + u)
+    range_of_energy = fit.get("E_range")
+    if range_of_energy is None:
+        range_of_energy = uncertainty.get("interval", nothing)
+    warnings = [warning for warning in result["warnings"] if not warning["text"].startswith("fewer trials than rule (3)")]
+    return {
+        **{name: numpy.nan if model[name] is None else float(model[name]) for name in ("S", "f0", "beta")},
+        "E": energy.get("E", numpy.nan), "E_low": float(range_of_energy[0]), "E_high": float(range_of_energy[1]),
+        "error": error, "error_low": float(interval[0]), "error_high": float(interval[1]),
+        "warnings": len(warnings),
+    }
+
+
 def load_table(path) -> dict:
     """A CSV table of the program: an array for each column, in its order; an empty field, as of a phase that was not
     measured, is NaN. Lines that begin with # are left out."""

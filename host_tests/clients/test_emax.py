@@ -126,7 +126,23 @@ class PythonTest(unittest.TestCase):
         # E goes with a^2, which is 1 here, and with S^2; the in-band figure of the paper's device is 1.196 % (DESIGN).
         energies = [f"{ENERGY / MODEL[0] ** 2 * scale:.3e}" for scale in (1, 4)]
         for line, name, energy in zip(done.stdout.splitlines(), ["C7", "D8"], energies, strict=True):
-            self.assertRegex(line, rf"^{name}: E = {energy} V\^2 s, U = \S+ V\^2 s \(k = 2\), in band 1\.196 %, 1 warnings$")
+            shown = re.fullmatch(rf"{name}: E = {energy} V\^2 s \((\S+) to (\S+)\), in band 1\.196 %, 0 warnings", line)
+            self.assertTrue(shown, line)
+            self.assertLess(float(shown[1]), float(energy))
+            self.assertLess(float(energy), float(shown[2]))
+
+    def test_figures_that_do_not_exist_are_nan(self):
+        tables = PROJECT / "host_tests/data/tables"
+        alone = emax.figures(emax.run_report(points=tables / "handheld_160hz.csv", program=PROGRAM))
+        self.assertEqual({name for name, value in alone.items() if value != value},
+                         {"f0", "beta", "E", "E_low", "E_high", "error", "error_low", "error_high"})
+        known = emax.figures(emax.run_report(model=MODEL[:3], trend="none", program=PROGRAM))
+        self.assertEqual({name for name, value in known.items() if value != value}, {"E_low", "E_high", "error_low", "error_high"})
+        result = emax.run_report(points=tables / "mv_per_g.csv", limit=1, trend="none", trials=1000, program=PROGRAM)
+        open_damping = emax.figures(result)
+        self.assertEqual(result["fit"]["determined"], "all but beta")
+        self.assertEqual([open_damping["E_low"], open_damping["E_high"]], list(result["fit"]["E_range"]))
+        self.assertGreater(open_damping["warnings"], 0)
 
     def test_tables_that_are_refused_are_passed_by(self):
         for name in ("handheld_160hz.csv", "khz.csv"):
