@@ -552,7 +552,7 @@ TEST(EnergyTrials, LargestCornerOfTheBoxMeetsTheKnownNumber) {
   }
 }
 
-TEST(EnergyTrials, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivity) {
+TEST(EnergyTrials, GainThatFollowsMakesEnergyGoWithTheSquareOfS) {
   TrialSettings settings = settings_for(Method::kBest, 2e-3);
   settings.gain_follows = true;
   ASSERT_EQ(start(settings, paper_model()), Status::kOk);

@@ -148,7 +148,7 @@ TEST(ResonanceSurface, OutsideItsNodesTheSignalIsRefined) {
   EXPECT_NEAR(trials.energy_of(far, workspace), expected, 1e-11 * expected);
 }
 
-TEST(ResonanceSurface, WithAGainThatFollowsTheEnergyGoesWithTheSquareOfTheSensitivity) {
+TEST(ResonanceSurface, GainThatFollowsMakesEnergyGoWithTheSquareOfS) {
   TrialSettings settings =
       settings_for({0.0102, 30000.0, 0.017}, Distribution::kNormal, 500.0, 0.0073);
   settings.pieces = TrialPieces({}, &surface);
