@@ -220,6 +220,99 @@ TEST(SweepFaults, AnyTimesOfAGainStepAndAnotherFaultKeepTheLimitOfAcceleration) 
   }
 }
 
+/// A device that gives fewer volts than the reference: exchanged, it makes the reference read less
+/// than there is, by as much as the drive would then rise. Level and limit are the same.
+Status run_of_a_device_of_few_volts(std::uint64_t seed, double sensitivity, double level_mps2,
+                                    const emax::sim::Fault& one, const emax::sim::Fault& other) {
+  BenchSettings settings;
+  settings.seed = seed;
+  settings.device.sensitivity = sensitivity;
+  settings.fault = one;
+  settings.second_fault = other;
+  SCOPED_TRACE(std::string(emax::sim::name_of(one.kind)) + "@" + std::to_string(one.at_frame) +
+               " " + emax::sim::name_of(other.kind) + "@" + std::to_string(other.at_frame) +
+               " seed " + std::to_string(seed) + " S " + std::to_string(sensitivity));
+  SweepSettings sweep = default_sweep_settings();
+  sweep.level_mps2 = level_mps2;
+  sweep.acceleration_limit_mps2 = level_mps2;
+  sweep.drive_limit_v = 10.0;
+  sweep.slew_v_per_s = 4e5;
+  sweep.expected_sensitivity = sensitivity;
+  SweepRun run(settings);
+  run.to_end(sweep);
+  EXPECT_LE(run.bench.peak_mps2(), 1.1 * level_mps2);
+  EXPECT_TRUE(run.bench.drive_is_at_zero());
+  EXPECT_EQ(run.sweep.stage, SweepStage::kFailed);
+  // Its words would let the user raise the drive.
+  EXPECT_NE(run.sweep.status, Status::kLevelNotReached);
+  return run.sweep.status;
+}
+
+constexpr double kFewVolts[] = {0.1, 0.2, 0.4};
+
+TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitWithADeviceOfFewVolts) {
+  Times times;
+  const std::uint64_t runs = from_environment("EMAX_FAULT_RUNS", 20);
+  for (const Expectation& one : kFaults) {
+    for (std::uint64_t i = 0; i < runs; ++i) {
+      const std::uint64_t seed = times.next();
+      (void)run_of_a_device_of_few_volts(seed, kFewVolts[i % 3], 2.0, {one.fault, times.next()},
+                                         {});
+    }
+  }
+}
+
+TEST(SweepFaults, AnyTimesOfAnExchangeAndAnotherFaultKeepTheLimitWithADeviceOfFewVolts) {
+  Times times;
+  const std::uint64_t runs = from_environment("EMAX_FAULT_RUNS", 20);
+  for (const Expectation& other : kFaults) {
+    for (std::uint64_t i = 0; i < runs && other.fault != FaultKind::kSwappedChannels; ++i) {
+      const std::uint64_t seed = times.next();
+      const std::uint64_t first = times.next();
+      (void)run_of_a_device_of_few_volts(seed, kFewVolts[i % 3], i % 2 == 0 ? 2.0 : 1.0,
+                                         {FaultKind::kSwappedChannels, first},
+                                         {other.fault, times.next()});
+    }
+  }
+}
+
+TEST(SweepFaults, ExchangedCablesOfADeviceOfFewVoltsAreRefusedAtTheFirstLook) {
+  // They once gave 9.4 times the limit.
+  for (const double sensitivity : {0.01, 0.02, 0.05, 0.1, 0.2, 0.3}) {
+    for (const std::uint64_t at_frame : {0U, 16000U, 22000U}) {
+      EXPECT_EQ(run_of_a_device_of_few_volts(1, sensitivity, 1.0,
+                                             {FaultKind::kSwappedChannels, at_frame}, {}),
+                Status::kSwappedChannels)
+          << sensitivity << " " << at_frame;
+    }
+  }
+}
+
+TEST(SweepFaults, AReferenceThatDiesBeforeAnExchangeRaisesNothing) {
+  // Its input then reads a tenth, which once let the acceleration rise to 9.2 times the limit.
+  (void)run_of_a_device_of_few_volts(212268403, 0.1, 2.0, {FaultKind::kUnpluggedReference, 207713},
+                                     {FaultKind::kSwappedChannels, 221310});
+}
+
+// Which of two inputs reads the acceleration nobody tells: the level stays below the limit by both.
+TEST(SweepFaults, ExchangedCablesWithoutADataSheetKeepTheLimit) {
+  for (const double sensitivity : {0.1, 0.3, 0.7}) {
+    BenchSettings bench;
+    bench.device.sensitivity = sensitivity;
+    bench.device.natural_frequency_hz = 20000.0;  // The phase says nothing at the check.
+    bench.fault = {FaultKind::kSwappedChannels, 0};
+    SweepSettings settings = default_sweep_settings();
+    settings.expected_sensitivity = 0.0;
+    settings.level_mps2 = 2.0;
+    settings.acceleration_limit_mps2 = 2.0;
+    settings.drive_limit_v = 10.0;
+    settings.slew_v_per_s = 4e5;
+    SweepRun run(bench);
+    run.to_end(settings);
+    EXPECT_LE(run.bench.peak_mps2(), 1.1 * 2.0) << sensitivity;
+  }
+}
+
 TEST(SweepFaults, ExchangedChannelsThatTurnRoundRaiseNothing) {
   // Taken for a device beyond its resonance, they once let the acceleration rise to 1.3 times the
   // limit: the level followed the device's sensor.

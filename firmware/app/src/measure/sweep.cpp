@@ -47,6 +47,7 @@ void SweepWorkspace::begin(const hal::StreamFormat& format, const FullScales& sc
   least_level_mps2_ = 0.0;
   level_scale_ = 1.0;
   level_room_mps2_ = std::numeric_limits<double>::infinity();
+  exchanged_share_ = 1.0;
   device_v_per_v_ = 0.0;
   activity_ = SweepWorkspace::Activity::kSilence;
   is_lowering_ = false;
@@ -274,7 +275,7 @@ double Sweep::aim_mps2() const noexcept {
   const double wanted =
       work_.level_scale_ * (level < kRoomShare * room ? level : kLoweredShare * room);
   const double most = (work_.target_.is_close ? kLimitShare : kCautiousShare) *
-                      results_.settings.acceleration_limit_mps2;
+                      work_.exchanged_share_ * results_.settings.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
 }
 

@@ -77,6 +77,8 @@ struct Sweep::Reading {
   double weak_v = 0.0;   // Below this it may be noise.
   double doubt_v = 0.0;  // What noise and hum make of its mean.
   double distortion = 0.0;
+  double least_v() const noexcept { return fit.amplitude_v - weak_v; }
+  double most_v() const noexcept { return fit.amplitude_v + weak_v; }
   bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
   bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
   // The phase is good to 0.15 degrees.
@@ -145,11 +147,15 @@ void Sweep::end_repeat() noexcept {
 
 // The first repeat after each change of the drive: is there a signal, and is the level right?
 void Sweep::judge_first(const Reading& reference, const Reading& device) noexcept {
+  if (results_.stage == SweepStage::kCheckBefore && look_for_exchange(reference, device)) {
+    suspect(Status::kSwappedChannels);
+    return;
+  }
   if (reference.is_weak()) {
     if (device.is_strong()) {
       suspect(Status::kNoReference);
     } else {
-      raise_drive();
+      raise_drive(reference, device);
     }
     return;
   }
@@ -194,6 +200,26 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
     return;  // Within the tolerance at the largest drive.
   }
   drive_to(needed_v < most_v ? needed_v : most_v);
+}
+
+// Of exchanged channels the device's input reads the acceleration, and the level must not exceed
+// the limit by that unless the data sheet excludes it.
+//
+// @returns Whether the channels contradict the data sheet as only the drive's rise would answer:
+// the device reads more than the reference lets it.
+bool Sweep::look_for_exchange(const Reading& reference, const Reading& device) noexcept {
+  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
+  const double most_v = kPlausibleFactor * sheet_v_per_v;
+  const double least_v = sheet_v_per_v / kPlausibleFactor;
+  const double reference_most_v = reference.most_v();
+  const double device_most_v = device.most_v();
+  const bool has_sheet = sheet_v_per_v > 0.0;
+  const bool is_excluded = has_sheet && (reference.least_v() > most_v * device_most_v ||
+                                         reference_most_v < least_v * device.least_v());
+  work_.exchanged_share_ = is_excluded || reference.fit.amplitude_v > device_most_v
+                               ? 1.0
+                               : reference.fit.amplitude_v / device_most_v;
+  return has_sheet && !is_excluded && device.least_v() > most_v * reference_most_v;
 }
 
 // Before the level follows a reference that may be another sensor by now, upwards or downwards.
@@ -275,6 +301,18 @@ bool Sweep::may_rise(const Reading& reference, const Reading& device, double nee
   const bool is_look = !(work_.drive_per_acceleration_ > 0.0);
   SweepWorkspace::Target& target = work_.target_;
   const bool is_permitted = is_look || needed_v <= target.permitted_v;
+  if (work_.device_v_per_v_ > 0.0 && device.is_weak() &&
+      (!is_permitted || device.most_v() < 0.5 * reference.fit.amplitude_v / ratio_factor() /
+                                              magnitude(inverse_expected()))) {
+    // What the reference's input reads may be the device, and the reference dead.
+    suspect(Status::kNoDevice);
+    return false;
+  }
+  if (!is_permitted && results_.stage == SweepStage::kCheckBefore && drive_v >= few_steps_v()) {
+    // At one frequency less per drive from one look to the next is no shaker's way.
+    suspect(device.is_weak() ? Status::kNoDevice : Status::kNoReference);
+    return false;
+  }
   if (is_permitted && reference.distortion <= kDistortedShare) {
     target.permitted_v = is_look ? SweepWorkspace::kPermittedStep * needed_v : target.permitted_v;
     return true;
@@ -301,7 +339,7 @@ bool Sweep::may_rise(const Reading& reference, const Reading& device, double nee
 }
 
 // Neither channel has a signal. Once the shaker is known, more drive is no way to find out why.
-void Sweep::raise_drive() noexcept {
+void Sweep::raise_drive(const Reading& reference, const Reading& device) noexcept {
   if (work_.drive_per_acceleration_ > 0.0) {
     suspect(Status::kWeakSignal);
     return;
@@ -313,7 +351,16 @@ void Sweep::raise_drive() noexcept {
     fail(Status::kWeakSignal);
     return;
   }
-  const double raised_v = kRaise * work_.drive_.amplitude_v();
+  // What is not seen yet may be as large as the noise hides, or, of exchanged channels, as what the
+  // other input reads.
+  const double hidden_mps2 = acceleration_of(
+      device.fit.amplitude_v > reference.weak_v ? device.most_v() : reference.weak_v);
+  const double rise = aim_mps2() / hidden_mps2;
+  if (rise < SweepWorkspace::kPermittedStep) {
+    fail(Status::kWeakSignal);
+    return;
+  }
+  const double raised_v = (rise < kRaise ? rise : kRaise) * work_.drive_.amplitude_v();
   drive_to(raised_v < most_v ? raised_v : most_v);
 }
 

@@ -39,7 +39,11 @@ class SweepWorkspace;
 /// tenth less per drive from one look to the next at a frequency, while the device does not, ends
 /// the sweep. The cables are judged before the level follows the reference; a reading that is no
 /// sine is no reason for more drive; and while nothing was seen at all, a tenth of the drive limit
-/// is the most.
+/// is the most, and what noise may hide is below the limit of acceleration. Channels of which the
+/// device's reads more than the data sheet lets it, as exchanged ones do, are refused at the first
+/// look. As long as an exchange is not excluded, the level is kept below the limit by either
+/// channel, read as the reference: without a data sheet this alone protects. A device without a
+/// signal lets no reading of the reference raise the drive.
 ///
 /// A run is three references: what it has found so far is in the results, what it needs to go on in
 /// the workspace. A new one on the same three goes on where the last one was. Nobody else may write
@@ -103,7 +107,8 @@ class Sweep {
   void fail_at_level() noexcept;
   double room_mps2(double reference_v, double device_v) const noexcept;
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
-  void raise_drive() noexcept;
+  bool look_for_exchange(const Reading& reference, const Reading& device) noexcept;
+  void raise_drive(const Reading& reference, const Reading& device) noexcept;
   double offset_change_v(double reference_v, double device_v) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;

@@ -67,6 +67,7 @@ class SweepWorkspace {
   double least_level_mps2_ = 0.0;        // Of few steps of the drive; 0 until known.
   double level_scale_ = 0.0;             // 1; overrange halves it.
   double level_room_mps2_ = 0.0;         // What takes a channel to full scale.
+  double exchanged_share_ = 0.0;         // Of the limit that the reference may read; 1 if certain.
   double device_v_per_v_ = 0.0;          // Device's volts per volt of drive, of the one before.
   double first_reference_offset_v_ = 0.0;
   double first_device_offset_v_ = 0.0;
