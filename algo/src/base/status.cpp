@@ -91,6 +91,9 @@ const char* explain(Status status) noexcept {
              "its cable and supply.";
     case Status::kHum:
       return "Hum of the mains is too strong here; measure at other frequencies or more cycles.";
+    case Status::kFewSteps:
+      return "The limit of acceleration leaves the drive's converter too few steps; put an "
+             "attenuator behind the drive and tell the drive's full scale, or raise the limit.";
     case Status::kNotProven:
       return "No upper bound passed its check for this device and time; shorten T, or use the "
              "energy found without a bound.";

@@ -107,6 +107,43 @@ TEST(Sweep, ALevelOfFewStepsIsNamedWithTheLeastLevel) {
   }
 }
 
+// Steps of the drive that are large beside the limit: an accepted limit is kept, another is refused
+// before the drive has more than five of them.
+TEST(Sweep, LimitsOfFewStepsAreKeptOrRefused) {
+  struct Case {
+    double full_scale_v;
+    double limit_mps2;
+    bool is_accepted;
+  };
+  // 2 m/s^2 per V: 0.05 m/s^2 by five steps of 10 V, and three times that is needed.
+  const Case cases[] = {{10.0, 0.2, true},   {10.0, 0.1, false}, {10.0, 0.06, false},
+                        {10.0, 0.01, false}, {1.0, 0.2, true},   {1.0, 0.1, true},
+                        {1.0, 0.06, true},   {1.0, 0.02, true},  {1.0, 0.01, false}};
+  for (const Case& c : cases) {
+    for (const double noise_v : {0.0, 1e-4, 5e-3}) {
+      SCOPED_TRACE(std::to_string(c.full_scale_v) + " V, " + std::to_string(c.limit_mps2) +
+                   " m/s^2, noise " + std::to_string(noise_v));
+      BenchSettings bench;
+      bench.noise_v = noise_v;
+      bench.front_end.drive_v = c.full_scale_v;
+      SweepSettings settings = default_sweep_settings();
+      settings.frequency_count = 4;
+      settings.frequency_hz = {30.0, 300.0, 3000.0, 6000.0};
+      settings.level_mps2 = c.limit_mps2;
+      settings.acceleration_limit_mps2 = c.limit_mps2;
+      settings.drive_full_scale_v = c.full_scale_v;
+      settings.drive_limit_v = std::min(5.0, c.full_scale_v);
+      SweepRun run(bench);
+      run.to_end(settings);
+      EXPECT_EQ(run.sweep.status, c.is_accepted ? Status::kOk : Status::kFewSteps)
+          << emax::explain(run.sweep.status);
+      const double steps_v = 0.0025 * c.full_scale_v;
+      // Half a step of rounding, and the armature rings with each step: less than 7 for 5.
+      EXPECT_LE(run.bench.peak_mps2(), c.is_accepted ? 1.1 * c.limit_mps2 : 1.4 * 2.0 * steps_v);
+    }
+  }
+}
+
 TEST(Sweep, FindsTheTruthWithinItsUncertainties) {
   double squares = 0.0;
   std::size_t components = 0;

@@ -484,7 +484,8 @@ TEST(Measurement, EachFaultHasItsName) {
       Status::kSaturated,       Status::kStuckChannel,     Status::kNoReference,
       Status::kNoDevice,        Status::kWeakSignal,       Status::kLevelNotReached,
       Status::kSwappedChannels, Status::kInvertedPolarity, Status::kDistorted,
-      Status::kDcDrift,         Status::kStopped,          Status::kHum};
+      Status::kDcDrift,         Status::kStopped,          Status::kHum,
+      Status::kFewSteps};
   for (const Status fault : faults) {
     names.insert(emax::app::name_of_fault(fault));
   }

@@ -50,6 +50,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
                         ///< from.
     kLostDigits,        ///< Rounding is more than 1e-9 of the energy, in every form there is.
     kHum,               ///< Mains at the frequency that is measured.
+    kFewSteps,          ///< The limit of acceleration leaves the drive's converter too few steps.
 };
 
 /// @returns One sentence, in plain words, that says what is wrong and what to do next. Never null.

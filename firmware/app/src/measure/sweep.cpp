@@ -20,10 +20,12 @@ constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by:
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
-constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known.
+constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known,
+                                           // but no more than few steps of the converter.
 constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
 constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
+constexpr double kRoundedSteps = 0.2;    // Of few steps: one.
 constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once,
 constexpr double kLoweredShare = 0.5;    // to this share.
 constexpr double kCautiousShare = 0.25;  // Of the limit, before this frequency was seen.
@@ -102,7 +104,8 @@ void Sweep::stop() noexcept {
 }
 
 void Sweep::fail(Status status) noexcept {
-  results_.least_level_mps2 = has_few_steps() ? work_.least_level_mps2_ : 0.0;
+  results_.least_level_mps2 =
+      has_few_steps() || status == Status::kFewSteps ? work_.least_level_mps2_ : 0.0;
   (void)stream_.stop();
   results_.may_swing = results_.may_swing || results_.blocks > 0;
   results_.status = status;
@@ -175,9 +178,14 @@ void Sweep::watch() noexcept {
     return;
   }
   const double peak_v = reference_peak_v() - kNoisePeak * results_.inputs.silent_reference.noise_v;
+  const bool is_too_much = acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2;
+  if (is_too_much && !full_scale && !(work_.drive_per_acceleration_ > 0.0) &&
+      !(work_.drive_.amplitude_v() > few_steps_v())) {
+    fail(Status::kFewSteps);
+    return;
+  }
   // The device may ring while it settles.
-  if ((full_scale && !work_.is_lowering_) ||
-      acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2) {
+  if ((full_scale && !work_.is_lowering_) || is_too_much) {
     lower_level();
   }
 }
@@ -274,9 +282,19 @@ double Sweep::aim_mps2() const noexcept {
   const double level = results_.settings.level_mps2;
   const double wanted =
       work_.level_scale_ * (level < kRoomShare * room ? level : kLoweredShare * room);
-  const double most = (work_.target_.is_close ? kLimitShare : kCautiousShare) *
-                      work_.exchanged_share_ * results_.settings.acceleration_limit_mps2;
+  const double most = work_.target_.is_close ? most_mps2()
+                                             : kCautiousShare * work_.exchanged_share_ *
+                                                   results_.settings.acceleration_limit_mps2;
   return wanted < most ? wanted : most;
+}
+
+// The converter rounds by half a step, which a resonance of the shaker magnifies.
+double Sweep::most_mps2() const noexcept {
+  const double steps_mps2 = work_.drive_per_acceleration_ > 0.0
+                                ? kRoundedSteps * few_steps_v() / work_.drive_per_acceleration_
+                                : 0.0;
+  return work_.exchanged_share_ *
+         (kLimitShare * results_.settings.acceleration_limit_mps2 - steps_mps2);
 }
 
 // A sharp resonance ahead takes the device's channel to full scale, and it needs periods to ring
@@ -318,7 +336,7 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   const double most_v = work.drive_.max_amplitude_v(frequency_hz);
   double amplitude_v = work.drive_per_acceleration_ > 0.0
                            ? aim_mps2() * work.drive_per_acceleration_
-                           : kFirstDriveShare * settings.drive_limit_v;
+                           : std::min(kFirstDriveShare * settings.drive_limit_v, few_steps_v());
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
   target.is_close = true;
   target.permitted_v = SweepWorkspace::kPermittedStep * aim_mps2() * work.drive_per_acceleration_;

@@ -19,6 +19,10 @@ constexpr double kLooseShare = 0.01;     // Repeats that differ by more are take
 constexpr double kDistortedShare = 0.1;  // An error above,
 constexpr double kFlaggedShare = 0.03;   // flagged above.
 constexpr double kFewSteps = 0.0025;     // Of full scale: five steps of 12 bits, 8 %.
+// Times that, at the check, for what the limit permits: the first look at a frequency takes a
+// quarter, and the shaker may be livelier there.
+constexpr double kCautiousSteps = 2.5;
+constexpr double kSixOfFive = 1.2;
 constexpr std::uint64_t kStuckWords = 128;
 constexpr double kOffsetShare = 0.02;  // Of full scale, against the silence.
 constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
@@ -162,6 +166,14 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   const double acceleration = acceleration_of(reference.fit.amplitude_v);
   const double drive_v = work_.drive_.amplitude_v();
   const double per_acceleration = drive_v / acceleration;
+  const double few_steps_mps2 = few_steps_v() / per_acceleration;
+  const double share = results_.stage == SweepStage::kCheckBefore ? kCautiousSteps : 1.0;
+  if (few_steps() == Status::kFewSteps && drive_v >= few_steps_v() &&
+      most_mps2() < share * few_steps_mps2) {
+    work_.least_level_mps2_ = few_steps_mps2;
+    fail(Status::kFewSteps);
+    return;
+  }
   work_.target_.is_close = true;
   if (!(work_.drive_per_acceleration_ > 0.0)) {
     work_.level_room_mps2_ = room_mps2(reference.fit.amplitude_v, device.fit.amplitude_v);
@@ -272,11 +284,18 @@ bool Sweep::has_few_steps() const noexcept {
   return work_.least_level_mps2_ > 0.0 && work_.drive_.amplitude_v() < few_steps_v();
 }
 
+// A level near the limit cannot be raised.
+Status Sweep::few_steps() const noexcept {
+  return 2.0 * results_.settings.level_mps2 > results_.settings.acceleration_limit_mps2
+             ? Status::kFewSteps
+             : Status::kWeakSignal;
+}
+
 // A level that full scale has made little is not reached for the converters' steps, and a channel
 // that was too large for its level may not follow the drive.
 void Sweep::fail_at_level() noexcept {
   fail(is_level_little() || work_.target_.was_overrange ? Status::kSaturated
-       : has_few_steps()                                ? Status::kWeakSignal
+       : has_few_steps()                                ? few_steps()
                                                         : Status::kLevelNotReached);
 }
 
@@ -438,9 +457,13 @@ void Sweep::suspect(Status status) noexcept {
 
 // Less of a drive of few steps, as for other distortion, would not help.
 Status Sweep::distortion() const noexcept {
-  return is_level_little() ? Status::kSaturated
-         : has_few_steps() ? Status::kWeakSignal
-                           : Status::kDistorted;
+  if (is_level_little()) {
+    return Status::kSaturated;
+  }
+  // With one step more, too, a look may be distorted.
+  const bool is_of_steps = work_.drive_per_acceleration_ > 0.0 &&
+                           work_.drive_.amplitude_v() < kSixOfFive * few_steps_v();
+  return is_of_steps ? few_steps() : Status::kDistorted;
 }
 
 // K over the ratio of the volts.

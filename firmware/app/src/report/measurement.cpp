@@ -343,6 +343,8 @@ const char* name_of_fault(Status status) noexcept {
       return "DC drift";
     case Status::kHum:
       return "mains hum";
+    case Status::kFewSteps:
+      return "few steps";
     case Status::kStopped:
       return "stopped";
     case Status::kOk:

@@ -115,6 +115,7 @@ class Sweep {
   Status distortion() const noexcept;
   double few_steps_v() const noexcept;
   bool has_few_steps() const noexcept;
+  Status few_steps() const noexcept;
   void end_target() noexcept;
   bool is_neighbour() const noexcept;
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
@@ -128,6 +129,7 @@ class Sweep {
   void share_effects(double check_change) noexcept;
   double acceleration_of(double reference_v) const noexcept;
   double aim_mps2() const noexcept;
+  double most_mps2() const noexcept;
   double ratio_factor() const noexcept;
   Complex ratio_of(const Complex& reference, const Complex& device) const noexcept;
 

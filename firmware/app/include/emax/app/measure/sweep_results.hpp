@@ -50,7 +50,8 @@ struct SweepResults {
   Complex check_before;
   Complex check_after;
   double failed_frequency_hz = 0.0;  ///< Where it failed; 0 in the silence or if it has not.
-  /// What a drive of five steps of 12 bits makes, where it failed with fewer; 0 if it did not.
+  /// What a drive of five steps of 12 bits makes, where it failed with fewer or with a limit below
+  /// that; 0 if it did not.
   double least_level_mps2 = 0.0;
   std::uint64_t blocks = 0;  ///< Exchanged so far.
   std::size_t point_count = 0;
@@ -70,6 +71,7 @@ struct SweepResults {
   /// * kDistorted: What the sine leaves over, or the differences between repeats, beyond 10 %.
   /// * kDcDrift: An offset that wanders.
   /// * kHum: Mains at the frequency, above 10 % of the ratio, at the check frequency above 2 %.
+  /// * kFewSteps: The limit of acceleration is below what the drive's converter can set.
   /// * kStopped: `Sweep::stop()`.
   /// What disturbs a repeat is looked at twice: the frequency is measured again, once.
   Status status = Status::kOk;
