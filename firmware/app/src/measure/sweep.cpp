@@ -20,8 +20,8 @@ constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by:
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
-constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known,
-                                           // but no more than few steps of the converter.
+constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known;
+constexpr double kLittle_mps2 = 1.0;       // a limit below is looked at with few steps.
 constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
 constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
@@ -308,6 +308,12 @@ void Sweep::foresee_resonance() noexcept {
                                     kLeastRoom * results_.settings.level_mps2);
 }
 
+double Sweep::first_drive_v() const noexcept {
+  const double share_v = kFirstDriveShare * results_.settings.drive_limit_v;
+  const bool is_little = results_.settings.acceleration_limit_mps2 < kLittle_mps2;
+  return is_little && few_steps_v() < share_v ? few_steps_v() : share_v;
+}
+
 void Sweep::begin_target(double frequency_hz) noexcept {
   SweepWorkspace& work = work_;
   const SweepSettings& settings = results_.settings;
@@ -336,7 +342,7 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   const double most_v = work.drive_.max_amplitude_v(frequency_hz);
   double amplitude_v = work.drive_per_acceleration_ > 0.0
                            ? aim_mps2() * work.drive_per_acceleration_
-                           : std::min(kFirstDriveShare * settings.drive_limit_v, few_steps_v());
+                           : first_drive_v();
   amplitude_v = amplitude_v < most_v ? amplitude_v : most_v;
   target.is_close = true;
   target.permitted_v = SweepWorkspace::kPermittedStep * aim_mps2() * work.drive_per_acceleration_;

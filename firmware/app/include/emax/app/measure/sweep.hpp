@@ -114,6 +114,7 @@ class Sweep {
   void suspect(Status status) noexcept;
   Status distortion() const noexcept;
   double few_steps_v() const noexcept;
+  double first_drive_v() const noexcept;
   bool has_few_steps() const noexcept;
   Status few_steps() const noexcept;
   void end_target() noexcept;
