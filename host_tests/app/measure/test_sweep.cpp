@@ -13,6 +13,7 @@
 #include "emax/app/measure/sweep.hpp"
 #include "emax/app/measure/sweep_results.hpp"
 #include "emax/app/measure/sweep_workspace.hpp"
+#include "emax/identify/wlsp.hpp"
 #include "emax/sim/sim_bench.hpp"
 
 #include "app/sweep_run.hpp"
@@ -141,6 +142,40 @@ TEST(Sweep, LimitsOfFewStepsAreKeptOrRefused) {
       // Half a step of rounding, and the armature rings with each step: less than 7 for 5.
       EXPECT_LE(run.bench.peak_mps2(), c.is_accepted ? 1.1 * c.limit_mps2 : 1.4 * 2.0 * steps_v);
     }
+  }
+}
+
+// One in a hundred is promised: of 60, three or fewer, but for once in 300.
+TEST(Sweep, StatedLinearityAndCrosstalkAreNoMisfit) {
+  struct Case {
+    double linearity_percent;
+    double crosstalk_percent;
+    double level_mps2;
+  };
+  for (const Case& c : {Case{0.5, 0.0, 5.0}, Case{0.0, 0.1, 1.0}}) {
+    int alarms = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      BenchSettings bench;
+      bench.seed = seed;
+      bench.noise_v = 1e-4;
+      bench.linearity_expanded_percent = c.linearity_percent;
+      bench.crosstalk_expanded_percent = c.crosstalk_percent;
+      SweepSettings settings = default_sweep_settings();
+      settings.level_mps2 = c.level_mps2;
+      settings.linearity_expanded_percent = c.linearity_percent;
+      settings.crosstalk_expanded_percent = c.crosstalk_percent;
+      SweepRun run(bench);
+      run.to_end(settings);
+      ASSERT_EQ(run.sweep.status, Status::kOk);
+      static emax::FrequencyResponse points;
+      static emax::Wlsp fit;
+      ASSERT_EQ(run.sweep.copy_to(points), Status::kOk);
+      ASSERT_EQ(fit.fit(points), Status::kOk);
+      // Wilson and Hilferty (1931) for 81 degrees of freedom and one in a hundred: 1.40.
+      ASSERT_EQ(fit.result().dof, 81U);
+      alarms += fit.result().chi2 / 81.0 > 1.40 ? 1 : 0;
+    }
+    EXPECT_LE(alarms, 3) << c.linearity_percent << " " << c.crosstalk_percent;
   }
 }
 

@@ -34,7 +34,7 @@ constexpr FaultWords kFaults[] = {
     {Status::kDistorted, "distorted: lower SOUR:LEV, check mount; harmonic at f0?",
      scpi::kQuestionableCalibration},
     {Status::kHum, "mains hum: change SWE:FREQ, CHEC, CYCL", scpi::kQuestionableCalibration},
-    {Status::kFewSteps, "few steps: attenuate drive, DRIV:FULL; SOUR:LIM",
+    {Status::kFewSteps, "few steps: attenuate drive, SOUR:FULL; SOUR:LIM",
      scpi::kQuestionableVoltage},
     {Status::kDcDrift, "DC drift: warm up, check its cable", scpi::kQuestionableVoltage},
 };

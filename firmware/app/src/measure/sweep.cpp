@@ -6,6 +6,7 @@
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -14,7 +15,11 @@ namespace {
 constexpr double kRest_s = 2.0;
 constexpr double kMuchScatter = 1e-4;  // Relative, of the mean of a point's repeats.
 constexpr double kHiddenShare = 0.5;
-constexpr double kExpanded2 = 4.0;  // The square of k = 2.
+constexpr double kSquares =
+    10.0;  // Of crosstalk of 2.6 u, once in a hundred, with those of the fit.
+constexpr double kTurnedU = 2.0;  // Crosstalk of that many u, turned by the skew.
+constexpr double kSeldom = 3.0;   // Linearity of that many u, of both channels.
+constexpr double kPercentPerStandard = 200.0;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
@@ -423,9 +428,13 @@ void Sweep::share_effects(double check_change) noexcept {
   SweepResults& results = results_;
   const std::size_t count = results.point_count;
   double device2 = 0.0;
+  double amplitude = 0.0;
+  double reference2 = 0.0;
   double time = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     device2 = std::max(device2, norm(work_.scatter_[i].device));
+    amplitude = std::max(amplitude, results.table[i].point.amplitude);
+    reference2 += norm(work_.scatter_[i].reference) / static_cast<double>(count);
   }
   const double check_u =
       point_verdict(work_.check_scatter_, results.settings.check_hz, results.noise, results.inputs)
@@ -443,6 +452,9 @@ void Sweep::share_effects(double check_change) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     time += time_of(results.table[i].point.frequency_hz, results.shared.corner_hz);
   }
+  const double linearity = results.settings.linearity_expanded_percent / kPercentPerStandard;
+  const double device_scale2 = work_.scales_.device_v * work_.scales_.device_v;
+  const double reference_scale2 = work_.scales_.reference_v * work_.scales_.reference_v;
   double passed = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     ResponsePoint& point = results.table[i].point;
@@ -453,9 +465,19 @@ void Sweep::share_effects(double check_change) noexcept {
     // The fit takes crosstalk for linear, and leaves squares of it in the points.
     const double leak = results.shared.leak / point.amplitude;
     const double back = results.shared.leak_back * point.amplitude;
-    const double bent = kExpanded2 * (leak * leak + back * back);
+    // What leaks is sampled at the time of its own channel, or of the other's: by the skew.
+    const double turned = kTwoPi * point.frequency_hz * abs(results.settings.skew_s);
+    const double bent = kSquares * (leak * leak + back * back) + kTurnedU * turned * (leak + back);
+
+    // It takes linearity for that of the device's channel at one level at all points, and all else
+    // of it for common: what the level is off by, squared in either channel, stays, too.
+    const double of_largest = point.amplitude / amplitude;
+    const double off_level =
+        kSeldom * linearity *
+        (abs(norm(work_.scatter_[i].device) - of_largest * of_largest * device2) / device_scale2 +
+         abs(norm(work_.scatter_[i].reference) - reference2) / reference_scale2);
     const double u = point.u_amplitude / point.amplitude;
-    const double shared2 = at.re * at.re + bent * bent;
+    const double shared2 = at.re * at.re + bent * bent + off_level * off_level;
     results.table[i].budget.shared = sqrt(shared2);
     point.u_amplitude = sqrt(u * u + shared2) * point.amplitude;
     point.u_phase_rad = sqrt(u * u + (at.im * at.im + bent * bent));
