@@ -629,7 +629,7 @@ class Bench(ProgramTest):
         # 5 V reach 10 m/s^2; with these gains 19 m/s^2 are within the range of the converters.
         result = self.run_program("report", "--level", "19", "--reference-gain", "1", "--device-gain", "0.1")
         self.assertEqual(result.returncode, 3)
-        self.assert_one_line(result.stderr, "level not reached at 160 Hz", "lower the level or raise the drive limit")
+        self.assert_one_line(result.stderr, "level not reached at 160 Hz", "lower the level, or check cables and gains")
 
     def test_levels_of_few_steps_are_named_with_the_least_one(self):
         # The drive's 12 bits have steps of 4.9 mV; 1 m/s^2 at 160 Hz takes 0.5 V, within 20 %.
@@ -639,6 +639,32 @@ class Bench(ProgramTest):
         least = float(re.search(r"five steps of the drive's converter make ([0-9.]+) m/s\^2", line)[1])
         self.assertAlmostEqual(least, 0.05, delta=0.01)
         self.succeed("report", *QUICK, "--frequencies", "100,160,200", "--level", str(2 * least), "--bench-noise", "1e-4")
+
+    def test_limits_below_the_steps_of_the_drive_are_refused_in_words(self):
+        # 2 m/s^2 for each V of the drive: five steps of 4.9 mV make 0.05 m/s^2.
+        line = self.assert_one_line(self.run_program("report", "--level", "0.06", "--acceleration-limit", "0.06").stderr,
+                                    "few steps at 160 Hz", "for --acceleration-limit", "told by --drive-full-scale")
+        least = re.search(r"five steps of the drive's converter make ([0-9.]+) m/s\^2: expected at least ([0-9.]+)", line)
+        self.assertAlmostEqual(float(least[1]), 0.05, delta=0.01)
+        limit = ("--level", least[2], "--acceleration-limit", least[2])
+        self.succeed("report", *QUICK, "--frequencies", "100,160,200", *limit)
+
+    def test_a_device_below_the_noise_is_named_by_its_data_sheet(self):
+        result = self.run_program("report", "--bench-truth", "1e-4,4073,0.3182")
+        self.assert_one_line(result.stderr, "no device", "by its data sheet the device makes 0.0001 V", "raise --level")
+
+    def test_an_interference_at_the_check_frequency_is_among_the_causes(self):
+        for seed in "1", "2":
+            result = self.run_program("report", "--bench-hum", "0.05,160", "--bench-seed", seed)
+            self.assertEqual(result.returncode, 3)
+            self.assert_one_line(result.stderr, "or an interference is at")
+
+    def test_exchanged_cables_never_ask_for_more_drive(self):
+        for sensitivity in "0.01", "0.05", "0.1":
+            result = self.run_program("report", "--bench-truth", f"{sensitivity},4073,0.3182",
+                                      "--bench-fault", "swapped-channels@0", "--level", "10", "--drive-limit", "10")
+            line = self.assert_one_line(result.stderr, "swapped channels at 160 Hz")
+            self.assertNotIn("raise", line)
 
     def test_what_a_sensitive_device_needs_is_said(self):
         result = self.run_program("report", "--bench-truth", "100,4073,0.3182")

@@ -64,8 +64,9 @@ const char* explain(Status status) noexcept {
       return "The signal is buried in noise at the level and drive permitted; raise the level, or "
              "check amplifier, both cables, gains and mounting.";
     case Status::kLevelNotReached:
-      return "The wanted acceleration needs more drive than is permitted; lower the level or raise "
-             "the drive limit.";
+      return "The wanted acceleration needs more drive than is permitted; lower the level, or "
+             "check "
+             "cables and gains, and only then raise the drive limit.";
     case Status::kSaturated:
       return "A channel is at its full scale even at a reduced drive; lower the conditioner's "
              "gain.";
@@ -73,7 +74,7 @@ const char* explain(Status status) noexcept {
       return "A channel does not change at all; check its converter and its conditioner's supply.";
     case Status::kNoReference:
       return "The reference channel carries no signal; check the reference sensor's cable and "
-             "conditioner.";
+             "conditioner, and whether the two cables are exchanged.";
     case Status::kNoDevice:
       return "The channel of the device under test carries no signal beyond its noise; check its "
              "cable, its conditioner and the gain.";

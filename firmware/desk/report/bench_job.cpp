@@ -95,6 +95,26 @@ bool is_at_check(const app::SweepResults& sweep) {
   return sweep.points().empty() && sweep.failed_frequency_hz == sweep.settings.check_hz;
 }
 
+// The first frequencies are judged by the check alone.
+bool is_at_first(const app::SweepResults& sweep) {
+  constexpr std::size_t kFirst = 3;
+  return sweep.points().size() < kFirst && !is_at_check(sweep);
+}
+
+// A device whose signal, by its data sheet, is hardly more than the noise of its channel.
+std::string words_on_buried(const app::SweepResults& sweep) {
+  constexpr double kClearly = 3.0;
+  const app::SweepSettings& settings = sweep.settings;
+  const double volts = settings.level_mps2 * settings.expected_sensitivity * settings.device_gain;
+  const double noise_v = sweep.inputs.silent_device.noise_v;
+  if (!(volts > 0.0) || volts > kClearly * noise_v) {
+    return "";
+  }
+  return "; by its data sheet the device makes " + general(volts, 2) + " V of the level of " +
+         general(settings.level_mps2, 3) + " m/s^2, and its channel has a noise of " +
+         general(noise_v, 2) + " V: raise --level, or amplify, told by --device-gain";
+}
+
 // With what an option can do about it.
 //
 // @param[in] full_scale_v As above.
@@ -127,7 +147,16 @@ std::string words_on(const app::SweepResults& sweep, double full_scale_v) {
   if (are_cables && is_at_check(sweep)) {
     return words +
            "; or the device's f0 is near the check frequency: give a --check-frequency "
-           "far below it";
+           "far below it; or an interference is at it: another one tells";
+  }
+  const bool may_be_disturbed =
+      are_cables || sweep.status == Status::kLevelNotReached || sweep.status == Status::kDistorted;
+  if (may_be_disturbed && is_at_first(sweep)) {
+    words += "; or an interference is at the check frequency of " + in_hz(sweep.settings.check_hz) +
+             ", by which this is judged: another --check-frequency tells";
+  }
+  if (sweep.status == Status::kNoDevice) {
+    return words + words_on_buried(sweep);
   }
   if (sweep.status == Status::kHum && is_at_check(sweep)) {
     return words + "; the check frequency is given by --check-frequency";

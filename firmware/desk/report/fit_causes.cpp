@@ -112,7 +112,8 @@ int mains_of(const std::vector<double>& frequencies_hz) {
   return 0;
 }
 
-std::string words_of_lone_points(LonePoints lone) {
+// @param[in] is_bent The budget has a linearity, which may be larger than stated.
+std::string words_of_lone_points(LonePoints lone, bool is_bent) {
   std::sort(lone.frequencies_hz.begin(), lone.frequencies_hz.end());
   const bool is_one = lone.frequencies_hz.size() == 1;
   std::string list;
@@ -128,8 +129,9 @@ std::string words_of_lone_points(LonePoints lone) {
                           " of " + std::to_string(mains_hz) + " Hz)";
   return "Without the point" + std::string(is_one ? "" : "s") + " at " + list + " Hz chi2/dof is " +
          number(lone.reduced_after, 2) + ", not " + number(lone.reduced_before, 2) +
-         ": likely causes are " + hum + " or a resonance of mounting or cable; move " +
-         (is_one ? "that frequency" : "them") + " by 5 Hz: hum stays behind, a resonance does not.";
+         ": likely causes are " + hum + (is_bent ? ", a linearity beyond the stated one" : "") +
+         " or a resonance of mounting or cable; move " + (is_one ? "that frequency" : "them") +
+         " by 5 Hz: hum stays behind, a resonance does not.";
 }
 
 }  // namespace
@@ -137,7 +139,9 @@ std::string words_of_lone_points(LonePoints lone) {
 std::string cause_of_measured(const Wlsp& fit) {
   const auto workspace = std::make_unique<DiagnosisWorkspace>();
   const LonePoints lone = find_lone_points(fit, *workspace);
-  return lone.frequencies_hz.empty() ? "" : words_of_lone_points(lone);
+  return lone.frequencies_hz.empty()
+             ? ""
+             : words_of_lone_points(lone, fit.response().shared().linearity > 0.0);
 }
 
 std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
