@@ -643,7 +643,7 @@ class Bench(ProgramTest):
     def test_limits_below_the_steps_of_the_drive_are_refused_in_words(self):
         # 2 m/s^2 for each V of the drive: five steps of 4.9 mV make 0.05 m/s^2.
         line = self.assert_one_line(self.run_program("report", "--level", "0.06", "--acceleration-limit", "0.06").stderr,
-                                    "few steps at 160 Hz", "for --acceleration-limit", "told by --drive-full-scale")
+                                    "few steps at 160 Hz", "for --acceleration-limit; an attenuator is told by")
         least = re.search(r"five steps of the drive's converter make ([0-9.]+) m/s\^2: expected at least ([0-9.]+)", line)
         self.assertAlmostEqual(float(least[1]), 0.05, delta=0.01)
         limit = ("--level", least[2], "--acceleration-limit", least[2])

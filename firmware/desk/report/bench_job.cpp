@@ -24,8 +24,8 @@ namespace {
 constexpr int kBlocksPerLook = 64;
 // Of the frequencies asked for, at least, to be evaluated after a fault.
 constexpr std::size_t kShareOfRest = 2;
-// Of what five steps make, that a limit of acceleration must be, rounded up.
-constexpr double kStepsOfLimit = 3.0;
+// Of what five steps make, that a limit of acceleration must be: with what they are off by.
+constexpr double kStepsOfLimit = 3.5;
 
 std::string in_hz(double frequency_hz) {
   StringSink sink;
@@ -138,9 +138,9 @@ std::string words_on(const app::SweepResults& sweep, double full_scale_v) {
     const std::string least = least_mps2 > 0.0
                                   ? "; " + std::string(level) + ": expected at least " +
                                         general(kStepsOfLimit * least_mps2, 2) +
-                                        " m/s^2 for --acceleration-limit, or an attenuator"
-                                  : "; an attenuator is";
-    return words + least + " told by --drive-full-scale";
+                                        " m/s^2 for --acceleration-limit"
+                                  : "";
+    return words + least + "; an attenuator is told by --drive-full-scale";
   }
   const bool are_cables =
       sweep.status == Status::kSwappedChannels || sweep.status == Status::kInvertedPolarity;
