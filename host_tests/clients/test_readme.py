@@ -203,6 +203,10 @@ class ReadmeTest(unittest.TestCase):
         result = self.run_script(scripts[0], "--bench-fault", "unplugged-device@3")
         self.assertEqual((result.returncode, result.stdout), (1, printed.splitlines()[0] + "\n"))
         self.assertRegex(result.stderr, r'^-240,"Hardware error;no device: [^"]*"\n$')
+        # So does a sweep that ends well and whose E would be wrong.
+        result = self.run_script(scripts[0], "--bench-fault", "gain-step@0.9")
+        self.assertEqual((result.returncode, result.stdout), (1, printed.splitlines()[0] + "\n"))
+        self.assertRegex(result.stderr, r'^-230,"Data corrupt or stale;check\'s ratio changed: [^"]*"\n$')
 
     def test_pyvisa_on_a_serial_line(self):
         """The same on a terminal in place of a board's line, at the speed that a board has."""

@@ -135,6 +135,20 @@ class InstrumentSweeps(ProgramTest):
         self.assert_one_line(done.stderr, "dc-drift did not strike: the sweep has ended after ", "give an earlier time")
         self.assertEqual(done.stdout.decode(), self.succeed("report", *QUICK, "--json"))
 
+    def test_a_doubtful_sweep_is_no_failure(self) -> None:
+        """The instrument has an error for it at its end; the report has its warning, as that of the same bench has here."""
+        bench = ["--bench-fault", "gain-step@0.9"]
+        options = ["--device-sensitivity", "0.5"]
+        with TcpInstrument(*bench) as remote:
+            got = self.run_program("report", "--instrument", remote.port, *options, *QUICK, "--json")
+            errors = remote.ask("SYST:ERR:ALL?")
+            again = self.run_program("report", "--instrument", remote.port, *options, *QUICK, "--json")
+        self.assertEqual((got.returncode, got.stderr), (0, b""))
+        self.assertEqual(got.stdout.decode(), self.succeed("report", *bench, *options, *QUICK, "--json"))
+        self.assertEqual([line["about"] for line in json.loads(got.stdout)["warnings"]][-2:], ["measurement"] * 2)
+        self.assertEqual(errors.count('-230,"Data corrupt or stale;'), 2, errors)
+        self.assertEqual(again.returncode, 0, "what stood in the queue is nothing to the next one")
+
     def test_files(self) -> None:
         with TcpInstrument() as remote:
             self.succeed("report", "--instrument", remote.port, *QUICK, "--out", "remote")

@@ -562,6 +562,82 @@ TEST(InstrumentSweep, FitsThePointsBeforeAFault) {
   EXPECT_EQ(i.errors(), "") << "one warning is enough";
 }
 
+// A sweep that ends well and yet cannot be right: -230 by itself, bit 8, and a line in the JSON.
+struct DoubtCase {
+  const char* setup;
+  sim::Fault fault;
+  const char* error;  ///< Its first word; null if there is no doubt.
+  const char* json;
+};
+
+constexpr const char* kOffSheet = "the device is 20 % or more off its data sheet";
+constexpr const char* kHasChanged = "the check's ratio has changed";
+constexpr sim::Fault kLateGainStep = {sim::FaultKind::kGainStep, 70'000};
+
+constexpr DoubtCase kDoubts[] = {
+    {"*CLS", {}, nullptr, nullptr},
+    {"REF:SENS 0.05", {}, "S is ", kOffSheet},
+    {"REF:SENS 0.2", {}, "S is ", kOffSheet},
+    {"DEV:GAIN 2", {}, "S is ", kOffSheet},
+    {"REF:SENS 0.05;:DEV:SENS 0", {}, nullptr, nullptr},  // Nothing to contradict.
+    {"*CLS", kLateGainStep, "check's ", kHasChanged},
+    {"DEV:SENS 0", kLateGainStep, "check's ", kHasChanged},
+};
+
+TEST(InstrumentSweep, SaysByItselfWhatCannotBeRight) {
+  constexpr const char* kStale = "-230,\"Data corrupt or stale;";
+  for (const DoubtCase& doubt : kDoubts) {
+    SCOPED_TRACE(doubt.setup);
+    sim::BenchSettings settings;
+    settings.fault = doubt.fault;
+    InstrumentBench i(settings);
+    EXPECT_EQ(i.ask(doubt.setup), "");
+    EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+    const std::string errors = i.errors();
+    const std::string expected = doubt.error != nullptr ? kStale + std::string(doubt.error) : "";
+    EXPECT_EQ(errors.substr(0, expected.empty() ? errors.size() : expected.size()), expected);
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), doubt.error != nullptr ? 1 : 0);
+    EXPECT_EQ(i.ask("STAT:QUES:COND?"), doubt.error != nullptr ? "256" : "0");
+    EXPECT_EQ(i.ask("STAT:QUES?"), doubt.error != nullptr ? "256" : "0") << "an event, too";
+    const std::string json = i.ask("FETC:JSON?");
+    for (const char* words : {kOffSheet, kHasChanged}) {
+      EXPECT_EQ(json.find(words) != std::string::npos, words == doubt.json) << words;
+    }
+  }
+}
+
+// The next sweep is judged by itself.
+TEST(InstrumentSweep, TakesItsDoubtBack) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("DEV:GAIN 2;:INIT;*OPC?;:STAT:QUES:COND?"), "1;256");
+  EXPECT_EQ(i.ask("*CLS;:DEV:GAIN 1;:INIT;*OPC?;:STAT:QUES:COND?"), "1;0");
+  EXPECT_NE(i.ask("CALC:IDEN?"), "");
+  EXPECT_EQ(i.errors(), "");
+}
+
+// Points that differ by more than is stated: the sweep cannot know, the fit of its points does.
+// 0.5 % of the device's voltage in the other channel, of which nothing is stated, is 100 times what
+// the points of a quiet bench are uncertain by.
+TEST(InstrumentSweep, SaysByItselfThatTheFitIsPoor) {
+  sim::BenchSettings settings;
+  settings.noise_v = 1e-4;
+  settings.crosstalk_expanded_percent = 1.0;
+  InstrumentBench i(settings);
+  EXPECT_EQ(i.ask("INIT;*OPC?"), "1");
+  EXPECT_EQ(i.errors(), "");
+  EXPECT_EQ(i.ask("STAT:QUES:COND?"), "0");
+  const std::vector<double> fit = i.numbers("CALC:IDEN?");
+  ASSERT_EQ(fit.size(), 8U);
+  ASSERT_GT(fit[6], 100.0 * fit[7]) << "chi-square of a bench that shows it";
+  const std::string error = i.ask("SYST:ERR?");
+  EXPECT_EQ(error.substr(0, 44), "-230,\"Data corrupt or stale;chi2 is high: an") << error;
+  EXPECT_EQ(i.ask("STAT:QUES:COND?"), "256");
+  EXPECT_NE(i.ask("CALC:ENER?"), "");
+  EXPECT_EQ(i.errors(), "") << "once is enough";
+  EXPECT_NE(i.ask("FETC:JSON?").find("chi2/dof is above what one fit in a hundred exceeds"),
+            std::string::npos);
+}
+
 // A shaker that was stopped in mid-sweep swings on its suspension for a while: that is neither a
 // drift nor noise.
 TEST(InstrumentSweep, BeginsAnewRightAfterAnAbort) {

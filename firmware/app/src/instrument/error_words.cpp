@@ -147,6 +147,17 @@ ErrorWords words_of(const SettingsError& error) noexcept {
   return {ErrorCode::kSettingsConflict, error.expectation, error.setting};
 }
 
+const char* words_of(Warning warning) noexcept {
+  if (warning == Warning::kDataSheet) {
+    return "S is 20 % off DEV:SENS: check gains, REF:SENS; f0 near SWE:CHEC?";
+  }
+  if (warning == Warning::kChange) {
+    return "check's ratio changed: gain switched, cable or mount loose, hum";
+  }
+  return warning == Warning::kFit ? "chi2 is high: another resonance, or U too small"
+                                  : "fit of a sweep that ended early";
+}
+
 std::uint16_t questionable_of(Status fault) noexcept { return fault_words(fault).questionable; }
 
 }  // namespace emax::app

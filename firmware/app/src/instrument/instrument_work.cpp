@@ -3,6 +3,7 @@
 #include "emax/app/instrument/instrument.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_context.hpp"
+#include "emax/app/report/report_warnings.hpp"
 
 namespace emax::app {
 namespace {
@@ -101,21 +102,36 @@ ErrorWords Instrument::initiate_sweep() noexcept {
   }
   change_device();
   is_fit_kept_ = false;
-  warns_of_sweep_ = true;
+  warns_of_fit_ = true;
   begin_work(scpi::kMeasuring | scpi::kSweeping);
   is_background_ = true;
   return {};
 }
 
 void Instrument::end_sweep() noexcept {
-  const Refusal& failure = sequencer_.failure();
-  if (!failure) {
-    warns_of_sweep_ = false;
-    return;
-  }
-  const ErrorWords words = words_of(failure, sequencer_);
+  const ErrorWords words = words_of(sequencer_.failure(), sequencer_);
   session_.status().report(words.code, words.words);
-  session_.status().questionable().set_condition(questionable_of(failure.status));
+  for (const Warning warning : {Warning::kDataSheet, Warning::kChange}) {
+    if (!words && contradicts(warning, sequencer_.sweep())) {
+      warn(warning);
+    }
+  }
+  session_.status().questionable().set_condition(questionable_of_sweep());
+}
+
+void Instrument::warn(Warning warning) noexcept {
+  session_.status().report(ErrorCode::kDataCorruptOrStale, words_of(warning));
+}
+
+/// The bit of its fault, or of what contradicts in it.
+std::uint16_t Instrument::questionable_of_sweep() const noexcept {
+  const SweepResults& sweep = sequencer_.sweep();
+  if (sweep.status != Status::kOk) {
+    return questionable_of(sweep.status);
+  }
+  const bool is_doubtful =
+      contradicts(Warning::kDataSheet, sweep) || contradicts(Warning::kChange, sweep);
+  return is_doubtful ? scpi::kQuestionableCalibration : 0;
 }
 
 // Evaluation
@@ -158,14 +174,19 @@ void Instrument::show_fit_quality() noexcept {
   }
   const WlspFit& fit = sequencer_.evaluation().fit.result();
   const bool is_poor = fit.chi2 / fit.dof > reduced_chi_square_limit(fit.dof);
-  const bool is_early =
-      sequencer_.origin() == Origin::kSweep && sequencer_.sweep().status != Status::kOk;
-  const int fault = is_early ? questionable_of(sequencer_.sweep().status) : 0;
+  const bool is_swept = sequencer_.origin() == Origin::kSweep;
+  const int doubt = is_swept ? questionable_of_sweep() : 0;
   const int poor = is_poor ? scpi::kQuestionableCalibration : 0;
-  session_.status().questionable().set_condition(static_cast<std::uint16_t>(fault | poor));
-  if (is_early && warns_of_sweep_) {
-    warns_of_sweep_ = false;
-    session_.status().report(ErrorCode::kDataCorruptOrStale, "fit of a sweep that ended early");
+  session_.status().questionable().set_condition(static_cast<std::uint16_t>(doubt | poor));
+  if (!is_swept || !warns_of_fit_) {
+    return;
+  }
+  warns_of_fit_ = false;
+  if (sequencer_.sweep().status != Status::kOk) {
+    warn(Warning::kEnded);
+  }
+  if (is_poor) {
+    warn(Warning::kFit);
   }
 }
 

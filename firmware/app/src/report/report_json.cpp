@@ -752,6 +752,8 @@ void write_warnings(const InstrumentState& state, const ReportContext& context,
     const ReportSection place = place_of(warning);
     const bool is_valid = place == ReportSection::kMonteCarlo    ? state.has_trials
                           : place == ReportSection::kUncertainty ? state.has_uncertainty
+                          : place == ReportSection::kFit         ? state.has_model
+                          : place == ReportSection::kMeasurement ? true
                                                                  : state.has_energy;
     if (is_valid) {
       write_if_due(warning, state.evaluation, context, json);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "emax/app/report/report_warnings.hpp"
 #include "emax/app/scpi/error_code.hpp"
 #include "emax/app/sequencer/sequencer.hpp"
 #include "emax/app/settings/settings_error.hpp"
@@ -34,6 +35,10 @@ ErrorWords words_of(const Refusal& refusal, const Sequencer& sequencer) noexcept
 
 /// @returns Settings conflict, with the name of the setting; no error if there is none.
 ErrorWords words_of(const SettingsError& error) noexcept;
+
+/// @returns Words for -230 of a sweep, or of its fit, that is done and yet in doubt: kDataSheet,
+/// kChange, kFit and kEnded.
+const char* words_of(Warning warning) noexcept;
 
 /// @returns The bit of STATus:QUEStionable that a fault of a sweep sets.
 std::uint16_t questionable_of(Status fault) noexcept;

@@ -218,6 +218,8 @@ class Instrument {
   void end_work(Job job) noexcept;
   void complete_work() noexcept;
   void end_sweep() noexcept;
+  void warn(Warning warning) noexcept;
+  std::uint16_t questionable_of_sweep() const noexcept;
   void end_evaluation() noexcept;
   ErrorWords begin_evaluation(Goal goal) noexcept;
   bool can_begin(scpi::Call& call) noexcept;
@@ -234,10 +236,10 @@ class Instrument {
   SweepSettings sweep_settings_;
   WichmannHill generator_;
   std::uint64_t deadlock_since_us_ = 0;
-  bool is_fit_kept_ = false;     // The fit of these points is in the store.
-  bool warns_of_sweep_ = false;  // A sweep that did not come to a good end; its fit is a warning.
-  bool is_background_ = false;   // The job was begun by INITiate.
-  bool is_query_job_ = false;    // The query under way has begun the job that runs or has ended.
+  bool is_fit_kept_ = false;    // The fit of these points is in the store.
+  bool warns_of_fit_ = false;   // The fit of the last sweep, the first time, if it is in doubt.
+  bool is_background_ = false;  // The job was begun by INITiate.
+  bool is_query_job_ = false;   // The query under way has begun the job that runs or has ended.
   bool was_aborted_ = false;
   bool completes_operation_ = false;  // *OPC waits for the job.
   bool was_connected_ = false;
