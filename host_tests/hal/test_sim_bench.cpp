@@ -326,19 +326,21 @@ TEST(SimBench, SeedDecidesAllWords) {
 // Means, standard deviations and correlations over seeds, at 4 standard deviations of each.
 TEST(SimBench, DrawsHaveTheStatedSpread) {
   constexpr std::size_t kSeeds = 1000;
-  constexpr std::size_t kDraws = 6;
+  constexpr std::size_t kDraws = 7;
   const BenchSettings defaults;
   std::vector<std::array<double, kDraws>> draws;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     BenchSettings settings;
     settings.seed = seed;
+    settings.ratio_expanded_percent = 0.1;
     SimBench bench;
     ASSERT_EQ(bench.configure(settings), Status::kOk);
     const BenchTruth& truth = bench.truth();
     draws.push_back({(truth.reference_sensitivity / 0.1 - 1.0) / 0.0025,
-                     truth.reference_drift / 0.0001, (truth.gain_factor - 1.0) / 0.0005,
+                     truth.reference_drift / 0.0001,
+                     (truth.gain_factor / truth.channel_ratio - 1.0) / 0.0005,
                      (truth.mounting_factor - 1.0) / 0.001, truth.reference_offset_v / 3e-3,
-                     truth.device_offset_v / 3e-3});
+                     truth.device_offset_v / 3e-3, (truth.channel_ratio - 1.0) / 0.0005});
     EXPECT_EQ(truth.device.sensitivity, defaults.device.sensitivity);
   }
   constexpr double kCount = kSeeds;
@@ -596,6 +598,7 @@ TEST(SimBench, RefusesBadSettingsAndKeepsTheOldOnes) {
       [](BenchSettings& s, double x) { s.reference_expanded_percent = x; },
       [](BenchSettings& s, double x) { s.drift_expanded_percent = x; },
       [](BenchSettings& s, double x) { s.gain_expanded_percent = x; },
+      [](BenchSettings& s, double x) { s.ratio_expanded_percent = x; },
       [](BenchSettings& s, double x) { s.mounting_expanded_percent = x; },
       [](BenchSettings& s, double x) { s.noise_v = x; },
       [](BenchSettings& s, double x) { s.offset_v = x; },

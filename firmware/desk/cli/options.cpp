@@ -72,8 +72,8 @@ void tell_sweep_about_bench(const std::vector<Given>& all, ReportOptions& option
   bench.device_gain = sweep.device_gain;
   bench.gain_expanded_percent =
       emax::sqrt(sweep.reference_gain_expanded_percent * sweep.reference_gain_expanded_percent +
-                 sweep.device_gain_expanded_percent * sweep.device_gain_expanded_percent +
-                 sweep.ratio_expanded_percent * sweep.ratio_expanded_percent);
+                 sweep.device_gain_expanded_percent * sweep.device_gain_expanded_percent);
+  bench.ratio_expanded_percent = sweep.ratio_expanded_percent;
   bench.front_end = {sweep.drive_full_scale_v, sweep.reference_full_scale_v,
                      sweep.device_full_scale_v};
   bench.mounting_expanded_percent = sweep.mounting_expanded_percent;

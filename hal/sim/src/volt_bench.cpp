@@ -43,7 +43,8 @@ bool uncertainties_ok(const BenchSettings& settings) noexcept {
          percent(settings.linearity_expanded_percent) && settings.clock_expanded_ppm >= 0.0 &&
          settings.clock_expanded_ppm <= kMaxClockPpm &&
          percent(settings.reference_expanded_percent) && percent(settings.drift_expanded_percent) &&
-         percent(settings.gain_expanded_percent) && percent(settings.mounting_expanded_percent);
+         percent(settings.gain_expanded_percent) && percent(settings.ratio_expanded_percent) &&
+         percent(settings.mounting_expanded_percent);
 }
 
 bool electronics_ok(const BenchSettings& settings, double sample_rate_hz) noexcept {
@@ -151,7 +152,17 @@ void VoltBench::draw() noexcept {
       settings_.reference_sensitivity *
       (1.0 + kStandard * settings_.reference_expanded_percent * reference);
   truth_.reference_drift = kStandard * settings_.drift_expanded_percent * drift;
-  truth_.gain_factor = settings_.ratio * (1.0 + kStandard * settings_.gain_expanded_percent * gain);
+  // The noise goes on from here whatever else is drawn, so that has a sequence of its own.
+  Noise channels;
+  channels.seed(settings_.seed ^ kChannels);
+  truth_.into_reference = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
+  truth_.into_device = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
+  truth_.reference_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
+  truth_.device_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
+  truth_.channel_ratio =
+      settings_.ratio * (1.0 + kStandard * settings_.ratio_expanded_percent * channels.normal());
+  truth_.gain_factor =
+      truth_.channel_ratio * (1.0 + kStandard * settings_.gain_expanded_percent * gain);
   truth_.mounting_factor = 1.0 + kStandard * settings_.mounting_expanded_percent * mounting;
   const Times times = draw_times(settings_);
   truth_.clock_factor = times.clock_factor;
@@ -168,13 +179,6 @@ void VoltBench::draw() noexcept {
   device_.scale = settings_.device_gain * device_factor;
   device_.offset_v = truth_.device_offset_v;
   device_.hum_phase_rad = kTwoPi * kTwoToMinus53 * static_cast<double>(noise_.bits() >> 11U);
-  // The noise goes on from here whatever comes behind it, so these have a sequence of their own.
-  Noise channels;
-  channels.seed(settings_.seed ^ kChannels);
-  truth_.into_reference = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
-  truth_.into_device = kStandard * settings_.crosstalk_expanded_percent * channels.normal();
-  truth_.reference_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
-  truth_.device_linearity = kStandard * settings_.linearity_expanded_percent * channels.normal();
   reference_.bend = bend_of(truth_.reference_linearity, settings_.front_end.reference_v);
   device_.bend = bend_of(truth_.device_linearity, settings_.front_end.device_v);
 }
@@ -195,10 +199,10 @@ BenchVolts VoltBench::step_wired(double reference_v, double device_v) noexcept {
     return {};
   }
   begin_step();
-  // Without sensor and conditioner, but with the error of the ratio, of which the device's channel
-  // has all.
+  // Without sensor and conditioner: of their factors only the ratio of the channels stays.
   return end_step(reference_v / (truth_.reference_sensitivity * settings_.reference_gain),
-                  device_v / (settings_.device_gain * truth_.mounting_factor));
+                  device_v * truth_.channel_ratio /
+                      (settings_.device_gain * truth_.gain_factor * truth_.mounting_factor));
 }
 
 void VoltBench::begin_step() noexcept {

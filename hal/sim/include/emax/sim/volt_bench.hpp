@@ -85,8 +85,9 @@ struct BenchSettings {
   double drift_time_s = 10.0;               ///< how long it takes; then it stays.
   double reference_gain = 10.0;             ///< Conditioners, nominal.
   double device_gain = 1.0;
-  double gain_expanded_percent = 0.1;      ///< Of the ratio of both gains, and
-  double ratio = 1.0;                      ///< what it is beside: a loopback finds it.
+  double gain_expanded_percent = 0.1;      ///< Of the ratio of both gains.
+  double ratio = 1.0;                      ///< Of the channels behind them: a loopback finds it.
+  double ratio_expanded_percent = 0.0;     ///< Of that.
   double mounting_expanded_percent = 0.2;  ///< Mounting, transverse motion, temperature.
 
   double noise_v = 5e-3;   ///< Standard deviation of each channel's white noise, at the ADC.
@@ -110,7 +111,8 @@ struct BenchTruth {
   Device device;
   double reference_sensitivity = 0.0;  ///< True, at time 0, V/(m/s^2).
   double reference_drift = 0.0;        ///< Relative, reached at drift_time_s.
-  double gain_factor = 1.0;      ///< True ratio of the gains, device over reference, over nominal.
+  double gain_factor = 1.0;      ///< True ratio of the gains, device over reference, over nominal,
+  double channel_ratio = 1.0;    ///< with this of the channels behind the conditioners.
   double mounting_factor = 1.0;  ///< Of the device's channel.
   double skew_s = 0.0;           ///< True.
   double clock_factor = 1.0;     ///< True rate of sampling over the nominal one.
