@@ -750,6 +750,8 @@ TEST(Instrument, RefusesPointsAndKeepsTheTable) {
   };
   constexpr Case kCases[] = {
       {"300,1,0,0.01", "-109,\"Missing parameter;five numbers for each point\""},
+      {"#210aaaaaaaaaa", "-168,\"Block data not allowed;#210aaaaaaaaaa\""},
+      {"100,#44000", "-168,\"Block data not allowed;#44000\""},
       {"200,1,0,0.01,1", "-222,\"Data out of range;frequency not above the last one\""},
       {"300,1,0,0,1", "-222,\"Data out of range;uncertainties must be above 0\""},
       {"300,-1,0,0.01,1", "-222,\"Data out of range;frequency, amplitude must be above 0\""},
@@ -775,6 +777,9 @@ TEST(Instrument, RefusesADeviceThatCannotBe) {
             "-222,\"Data out of range;uncertainties must be 0 or more\"");
   EXPECT_EQ(error_of(i, "CALC:MOD 1,4000,0.3,0.1"),
             "-109,\"Missing parameter;three numbers or six\"");
+  EXPECT_EQ(error_of(i, "CALC:MOD 1,2,0.3,0,0,0,0"),
+            "-108,\"Parameter not allowed;1,2,0.3,0,0,0,0\"");
+  EXPECT_EQ(error_of(i, "CALC:MOD #44000"), "-168,\"Block data not allowed;#44000\"");
   EXPECT_EQ(i.numbers("CALC:MOD?")[1], 4073.0);
   // Parameters that only the settings or the method cannot take are the evaluation's to refuse.
   EXPECT_EQ(error_of(i, "CALC:ENER:TIME 2;:CALC:ENER?"),

@@ -170,8 +170,8 @@ TEST_F(Loopback, RefusesAnInputWithoutTheDrive) {
   }
 }
 
-// A gain that is switched between the first frequency and the end, and a channel turned round: no
-// ratio or skew is that of the channels.
+// A gain that is switched between the first frequency and the end: no ratio is that of the
+// channels.
 TEST_F(Loopback, RefusesGainsThatAreNotSteady) {
   sim::BenchSettings settings;
   for (const std::uint64_t at_frame : {60'000U, 75'000U, 90'000U, 105'000U, 120'000U}) {
@@ -179,9 +179,18 @@ TEST_F(Loopback, RefusesGainsThatAreNotSteady) {
     EXPECT_FALSE(run(settings)) << at_frame;
     EXPECT_EQ(sequencer_.failure().obstacle, app::Obstacle::kUnsteadyWire);
   }
+}
+
+// Before more than a hundredth of the drive limit goes out.
+TEST_F(Loopback, NamesAChannelThatIsTurnedRound) {
+  sim::BenchSettings settings;
   settings.fault = {sim::FaultKind::kInvertedPolarity, 0};
   EXPECT_FALSE(run(settings));
-  EXPECT_EQ(sequencer_.failure().obstacle, app::Obstacle::kUnsteadyWire);
+  EXPECT_EQ(sequencer_.failure().obstacle, app::Obstacle::kTurnedWire);
+  EXPECT_LE(bench_.dac().max_amplitude, 0.0101 * 0.5 * hal::kWordsPerFullScale);
+  InstrumentBench i(settings);
+  EXPECT_EQ(i.ask("CORR:ACQ"), "");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;inverted channel: swap its leads\"\n");
 }
 
 TEST_F(Loopback, EndsAtOnceOnRequest) {
@@ -256,9 +265,16 @@ TEST_F(InstrumentLoopback, SaysWhereTheDriveDoesNotComeIn) {
   settings.fault = {sim::FaultKind::kUnpluggedDevice, 0};
   InstrumentBench i(settings);
   EXPECT_EQ(i.ask("DIAG:LOOP?"), "");
-  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale\"\n");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale, LIM:VOLT\"\n");
   EXPECT_EQ(i.ask("CORR:ACQ;RAT?"), "1,0");
-  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale\"\n");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale, LIM:VOLT\"\n");
+}
+
+// Of 10 mV a hundredth is less than a step of the DAC.
+TEST_F(InstrumentLoopback, SaysThatALowLimitHidesTheDrive) {
+  InstrumentBench i;
+  EXPECT_EQ(i.ask("SOUR:LIM:VOLT 0.01;:CORR:ACQ"), "");
+  EXPECT_EQ(i.errors(), "-240,\"Hardware error;no drive at inputs: wire, FULLscale, LIM:VOLT\"\n");
 }
 
 TEST_F(InstrumentLoopback, KeepsTheCorrectionsWhereGainsAreNotSteady) {

@@ -102,7 +102,8 @@ struct ObstacleWords {
 constexpr ObstacleWords kObstacles[] = {
     {Obstacle::kSweepRuns, ErrorCode::kSettingsConflict, "a sweep runs: ABOR or *WAI"},
     {Obstacle::kComputes, ErrorCode::kSettingsConflict, "computing: ABOR or *WAI first"},
-    {Obstacle::kNoWire, ErrorCode::kHardwareError, "no drive at inputs: wire, FULLscale"},
+    {Obstacle::kNoWire, ErrorCode::kHardwareError, "no drive at inputs: wire, FULLscale, LIM:VOLT"},
+    {Obstacle::kTurnedWire, ErrorCode::kHardwareError, "inverted channel: swap its leads"},
     {Obstacle::kUnsteadyWire, ErrorCode::kHardwareError, "unsteady gains: check wire, again"},
     {Obstacle::kNoDevice, ErrorCode::kDataCorruptOrStale, "no device: CALC:MOD, or INIT:SWE"},
     {Obstacle::kNoPoints, ErrorCode::kDataCorruptOrStale, "no points: INIT:SWE or TRAC:FRES:DATA"},

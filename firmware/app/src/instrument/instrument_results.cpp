@@ -209,10 +209,6 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
     call.fail(ErrorCode::kSettingsConflict, "points of a sweep: TRAC:FRES:CLE first");
     return;
   }
-  if (call.count() % kPointFields != 0) {
-    call.fail(ErrorCode::kMissingParameter, "five numbers for each point");
-    return;
-  }
   // All of them or none.
   FrequencyResponse& grown = work.borrow<FrequencyResponse>();
   grown.clear();
@@ -222,7 +218,11 @@ void InstrumentCommands::add_points(Instrument& i, Call& call) noexcept {
   while (call.has_more()) {
     double numbers[kPointFields] = {};
     for (std::size_t field = 0; field < kPointFields; ++field) {
-      if (!call.number(*kPointRules[field], numbers[field])) {
+      // What stands there is looked at first: it may be no number at all.
+      if (!call.has_more()) {
+        call.fail(ErrorCode::kMissingParameter, "five numbers for each point");
+      }
+      if (call.failed() || !call.number(*kPointRules[field], numbers[field])) {
         return;
       }
     }
@@ -338,10 +338,6 @@ void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
     }
     return;
   }
-  if (call.count() != 3 && call.count() != 6) {
-    call.fail(ErrorCode::kMissingParameter, "three numbers or six");
-    return;
-  }
   Device device = {};
   std::size_t at = 0;
   double* const fields[] = {&device.estimate.sensitivity,   &device.estimate.natural_frequency_hz,
@@ -351,6 +347,10 @@ void InstrumentCommands::model(Instrument& i, Call& call) noexcept {
     if (call.has_more() && !call.number(*kDeviceRules[at++ % 3], *field)) {
       return;
     }
+  }
+  if (at != 3 && at != 6) {
+    call.fail(ErrorCode::kMissingParameter, "three numbers or six");
+    return;
   }
   if (const ErrorWords words = i.conflict_with(Part::kDevice)) {
     report(words, call);

@@ -124,7 +124,7 @@ inline constexpr scpi::Command<Instrument> kUncertainty[] = {
 
 inline constexpr scpi::Command<Instrument> kLoopback[] = {
     {"DIAGnostic:LOOPback", kQuery, "", "With a wire from drive to both inputs: latency,offset_r,offset_d,gain_r,gain_d,ratio,skew,noise_r,noise_d,thd,lost", kPlain, C::loopback},
-    {"[SENSe:]CORRection:ACQuire", kBoth, "", "The same loopback, kept as RATio and SKEW; answers these: ratio,percent,skew,s", kPlain, C::acquire_corrections},
+    {"[SENSe:]CORRection:ACQuire", kBoth, "", "Measures by the same loopback, and keeps RATio and SKEW; the query only answers what is set: ratio,percent,skew,s", kPlain, C::acquire_corrections},
 };
 // clang-format on
 

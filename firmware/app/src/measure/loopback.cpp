@@ -179,8 +179,9 @@ void LoopbackRun::end_target() noexcept {
   const SineFitResult device =
       in_volts(response_fit_.device(), scales_.device_v / scales_.reference_v);
   // The first two are of the same frequency.
-  if (target_ < 2 && !is_wired(drive, reference, device)) {
-    end(Status::kNoReference);
+  const Status wired = target_ < 2 ? check_wire(drive, reference, device) : Status::kOk;
+  if (wired != Status::kOk) {
+    end(wired);
     return;
   }
   if (target_ > 0) {
@@ -201,8 +202,8 @@ void LoopbackRun::end_target() noexcept {
   begin_target();
 }
 
-bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& reference,
-                           const SineFitResult& device) noexcept {
+Status LoopbackRun::check_wire(const SineFitResult& drive, const SineFitResult& reference,
+                               const SineFitResult& device) noexcept {
   // Of all that look alike at this frequency, the one nearest to the stated latency.
   const double turns = angle_of(drive.phasor() / reference.phasor()) / kTwoPi;
   const auto stated = static_cast<double>(format_.latency_frames);
@@ -214,8 +215,13 @@ bool LoopbackRun::is_wired(const SineFitResult& drive, const SineFitResult& refe
   results_.distortion_percent =
       kPercent * distortion_of(reference.residual_std_v, results_.reference_noise_v,
                                reference.amplitude_v, static_cast<double>(reference.samples));
-  return is_near_one(results_.reference_gain) && is_near_one(results_.device_gain) &&
-         abs(off) < kMostFramesOff;
+  if (!is_near_one(results_.reference_gain) || !is_near_one(results_.device_gain)) {
+    return Status::kNoReference;
+  }
+  if ((device.phasor() / reference.phasor()).re < 0.0) {
+    return Status::kInvertedPolarity;
+  }
+  return abs(off) < kMostFramesOff ? Status::kOk : Status::kNoReference;
 }
 
 // Of phases that lie on a straight line through zero, up to what is left over.
@@ -231,7 +237,7 @@ Status LoopbackRun::evaluate() noexcept {
   results_.ratio_percent = kPercent * expanded(scatter);
   results_.skew_s = slope / omega;
   results_.skew_expanded_s = expanded(rest / kSquares) / omega;
-  // A gain that was switched on the way, or a channel that is turned round.
+  // Else a gain was switched on the way.
   const bool is_steady = results_.ratio_percent < kMostPercent && rest < kMostRest;
   return is_steady ? Status::kOk : Status::kDistorted;
 }

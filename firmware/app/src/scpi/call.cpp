@@ -5,6 +5,7 @@
 
 #include "emax/app/scpi/input_buffer.hpp"
 #include "emax/app/scpi/pattern.hpp"
+#include "emax/app/scpi/program_unit.hpp"
 
 #include "characters.hpp"
 #include "number_text.hpp"
@@ -30,7 +31,7 @@ Kind kind_of(Span<const char> text) noexcept {
     return Kind::kString;
   }
   if (first == '#') {
-    return text.size() > 1 && is_digit(text[1]) ? Kind::kBlock : Kind::kNondecimal;
+    return begins_block(text) ? Kind::kBlock : Kind::kNondecimal;
   }
   return first == '(' ? Kind::kExpression : Kind::kNumber;
 }

@@ -91,6 +91,10 @@ void parse_header(ProgramUnit& unit) noexcept {
 
 }  // namespace
 
+bool begins_block(Span<const char> parameter) noexcept {
+  return parameter.size() > 1 && parameter[0] == '#' && is_digit(parameter[1]);
+}
+
 ProgramUnit cut_unit(Span<const char> message, std::size_t& position) noexcept {
   ProgramUnit unit;
   MessageScanner scanner;

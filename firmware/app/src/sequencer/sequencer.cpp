@@ -166,6 +166,8 @@ void Sequencer::end_loopback() noexcept {
   has_loopback_ = status == Status::kOk;
   if (status == Status::kNoReference) {
     failure_ = {Obstacle::kNoWire};
+  } else if (status == Status::kInvertedPolarity) {
+    failure_ = {Obstacle::kTurnedWire};
   } else if (status == Status::kDistorted) {
     failure_ = {Obstacle::kUnsteadyWire};
   } else if (!has_loopback_) {

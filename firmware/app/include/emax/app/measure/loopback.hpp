@@ -72,7 +72,7 @@ class LoopbackRun {
   void end_silence() noexcept;
   void begin_target() noexcept;
   void end_target() noexcept;
-  bool is_wired(const SineFitResult& drive, const SineFitResult& reference,
+  Status check_wire(const SineFitResult& drive, const SineFitResult& reference,
                 const SineFitResult& device) noexcept;
   Status evaluate() noexcept;
   void end(Status status) noexcept;

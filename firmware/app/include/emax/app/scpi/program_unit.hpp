@@ -21,6 +21,9 @@ struct ProgramUnit {
   bool is_empty = false;     ///< Only white space.
 };
 
+/// @returns Whether this parameter is a block of either length (IEEE 488.2, 7.7.6).
+bool begins_block(Span<const char> parameter) noexcept;
+
 /// Cuts the next unit off a message and checks the form of its header (IEEE 488.2, 7.6.1).
 ///
 /// @param[in]     message  Complete, without its end.

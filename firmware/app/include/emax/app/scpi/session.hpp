@@ -216,7 +216,9 @@ void Session::start_unit(Table<Context> table, Message& message) noexcept {
   }
   const Arity arity = table[found.row].arity(unit.is_query);
   if (unit.count < arity.min) {
-    reject(message, ErrorCode::kMissingParameter, unit.header);
+    const bool is_block = begins_block(unit.parameters);
+    reject(message, is_block ? ErrorCode::kBlockDataNotAllowed : ErrorCode::kMissingParameter,
+           is_block ? unit.parameters : unit.header);
     return;
   }
   if (unit.count > arity.max) {

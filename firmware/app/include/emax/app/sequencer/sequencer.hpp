@@ -45,6 +45,7 @@ enum class Obstacle : std::uint8_t {
   kSweepSetting,   ///< `refused` of the sweep's results names it.
   kSweep,          ///< The stream did not start, or the sweep has failed: `status`.
   kNoWire,         ///< A loopback that does not see its drive.
+  kTurnedWire,     ///< A loopback that sees one channel with the opposite sign of the other.
   kUnsteadyWire,   ///< A loopback whose ratio or phase changes with time or frequency.
   kNoDevice,       ///< Neither points nor parameters.
   kNoPoints,       ///< The device is that of points, and there are none.
