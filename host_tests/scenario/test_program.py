@@ -688,6 +688,28 @@ class Bench(ProgramTest):
                     "the reference of the simulated bench has one at all frequencies")
         self.succeed("report", *QUICK, "--reference-table", "10,0.1,6000,0.1004")
 
+    def test_tables_of_the_reference_that_cannot_be(self):
+        self.refuse(["report", "--reference-table", "30,0.1,20,0.1"],
+                    'emax: --reference-table: "30,0.1,20,0.1" given; expected frequencies in ascending order')
+        self.refuse(["report", "--reference-table", "30,0,6000,0"],
+                    'emax: --reference-table: "30,0,6000,0" given; expected sensitivities above 0')
+
+    def test_a_table_that_ends_within_the_sweep_is_named(self):
+        words = "table does not span the sweep's frequencies"
+        for table, is_short in (("100,0.1,200,0.1", True), ("30,0.1,5000,0.1", True), ("31,0.1,6000,0.1", True), ("30,0.1,6000,0.1", False)):
+            result = self.run_program("report", *QUICK, "--reference-table", table, "--json")
+            self.assertEqual(result.returncode, 0)
+            self.assertEqual(words in result.stderr.decode(), is_short, table)
+            warnings = [line["text"] for line in json.loads(result.stdout)["warnings"]]
+            self.assertEqual(any(words in message for message in warnings), is_short, table)
+        self.assertIn(words, " ".join(self.run_program("report", *QUICK, "--reference-table", "100,0.1,200,0.1").stdout.decode().split()))
+        self.assertNotIn(words, self.run_program("report", *QUICK).stderr.decode())
+
+    def test_a_contradiction_says_by_how_much(self):
+        report = self.succeed("report", *QUICK, "--device-sensitivity", "0.6")
+        self.assertRegex(" ".join(report.split()), r"f0 is not near the check frequency \(1\.7\d* times it there\)\. ")
+        self.assertNotIn("?.", report)
+
     def test_an_uncertainty_behind_its_value_is_named_by_its_option(self):
         self.refuse(["report", "--reference-gain", "10,-1"], 'emax: --reference-gain: "10,-1" given; expected 0 to 50 percent')
         self.refuse(["report", "--correction-skew", "1e-6,1"], "emax: --correction-skew: ")

@@ -114,7 +114,7 @@ Problem check_reference_table(const Given& given, const ReportOptions& options) 
              ? wrong_value(given,
                            "sensitivities that differ from that at the check frequency by "
                            "--reference-uncertainty at most: the reference of the simulated bench "
-                           "has one at all frequencies")
+                           "has one at all frequencies; a table with a slope is for --instrument")
              : Problem{};
 }
 
@@ -129,7 +129,14 @@ Problem check_settings(const std::vector<Given>& all, ReportOptions& options) {
     return {};
   }
   const std::string name(option_of_setting(error.setting));
+  const bool is_of_table = is_given(all, "reference-table") &&
+                           (name == "reference table" || name == "reference sensitivity");
   for (const Given& given : all) {
+    if (is_of_table && given.option->name == "reference-table") {
+      const bool is_value = name == "reference sensitivity";
+      return wrong_value(given,
+                         (is_value ? "sensitivities " : "") + std::string(error.expectation));
+    }
     if (given.option->name == name) {
       return wrong_value(given, error.expectation);
     }

@@ -271,6 +271,15 @@ Problem remark_on_table(const ReportOptions& options, const ImportedPoints& impo
           doubt.empty() ? "" : name_of_input(options.points_path) + ": " + in_line(doubt)};
 }
 
+Problem remark_on_reference(const ReportOptions& options) {
+  app::SweepResults asked;
+  asked.settings = options.sweep;
+  const bool is_short = options.measures() && contradicts(app::Warning::kBeyondTable, asked);
+  return {ExitStatus::kDone, is_short ? std::string("--reference-table: ") +
+                                            app::words_of_contradiction(app::Warning::kBeyondTable)
+                                      : ""};
+}
+
 // A certificate may name less than ISO/IEC 17025 asks for, but not unnoticed.
 Problem remark_on_labels(const app::ReportContext& context) {
   const std::string missing = labels_not_stated(context);
@@ -379,7 +388,8 @@ Problem run_report(Span<const std::string_view> arguments) {
   }
   const Problem of_table = remark_on_table(options, imported);
   return problem ? problem
-                 : both(of_table, both(both(criterion_changed, remark), remark_on_labels(context)));
+                 : both(both(of_table, remark_on_reference(options)),
+                        both(both(criterion_changed, remark), remark_on_labels(context)));
 }
 
 std::string help_on_report() {

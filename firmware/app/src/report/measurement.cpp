@@ -387,10 +387,17 @@ void write_measurement_section(const Measurement& measurement, const Wlsp* fit,
   write_check(sweep, out);
   out.label("Points measured").integer(sweep.points().size()).text(" of ");
   out.integer(sweep.settings.frequency_count).line();
-  for (const Warning warning : {Warning::kEnded, Warning::kDataSheet, Warning::kChange}) {
+  for (const Warning warning :
+       {Warning::kEnded, Warning::kDataSheet, Warning::kBeyondTable, Warning::kChange}) {
     if (contradicts(warning, sweep)) {
       out.part(ReportPart::kWarning).text("  WARNING: ");
-      out.text(words_of_contradiction(warning)).text(".\n");
+      out.text(words_of_contradiction(warning));
+      if (warning == Warning::kDataSheet) {
+        out.text(" (").general(magnitude(sweep.check_before) / sweep.settings.expected_sensitivity,
+                               3);
+        out.text(" times it there)");
+      }
+      out.text(".\n");
     }
   }
   write_flagged(sweep, out);

@@ -14,6 +14,14 @@ constexpr double kNearSheet2 = 1.44;   // A factor of 1.2, squared.
   return found2 * sheet > 0.0 && (found2 > kNearSheet2 * sheet2 || found2 * kNearSheet2 < sheet2);
 }
 
+// Its ends are held beyond them.
+bool is_beyond_table(const SweepSettings& settings) noexcept {
+  const ReferenceCalibration& table = settings.reference;
+  return table.count > 1 && (settings.frequency_hz[0] < table.frequency_hz[0] ||
+                             settings.frequency_hz[settings.frequency_count - 1] >
+                                 table.frequency_hz[table.count - 1]);
+}
+
 }  // namespace
 
 bool contradicts(Warning warning, const SweepResults& sweep) noexcept {
@@ -24,6 +32,9 @@ bool contradicts(Warning warning, const SweepResults& sweep) noexcept {
     const Span<const SweepPoint> points = sweep.points();
     return !points.empty() && sweep.shared.drift > kMuchChange &&
            sweep.shared.drift > kBeyondNoise * points[0].budget.noise;
+  }
+  if (warning == Warning::kBeyondTable) {
+    return is_beyond_table(sweep.settings);
   }
   // Near its resonance a device is off by itself: then its lowest frequency is not.
   const double sheet = sweep.settings.expected_sensitivity;
@@ -40,8 +51,13 @@ const char* words_of_contradiction(Warning warning) noexcept {
     return "the check's ratio has changed: a gain was switched, or a cable or mounting is loose, "
            "or hum is near";
   }
-  return "the device is 20 % or more off its data sheet: check gains and reference set; "
-         "is f0 near the check frequency?";
+  if (warning == Warning::kBeyondTable) {
+    return "the reference's table does not span the sweep's frequencies: beyond it its first or "
+           "last "
+           "sensitivity is used";
+  }
+  return "the device is 20 % or more off its data sheet: check gains and reference set, and that "
+         "f0 is not near the check frequency";
 }
 
 }  // namespace emax::app

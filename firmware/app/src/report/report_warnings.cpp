@@ -131,6 +131,7 @@ bool holds(Warning warning, const EvaluationResults& results,
       return has_flags(context);
     case Warning::kEnded:
     case Warning::kDataSheet:
+    case Warning::kBeyondTable:
     case Warning::kChange:
       return context.measurement != nullptr && contradicts(warning, context.measurement->sweep);
   }
@@ -165,6 +166,7 @@ const char* about(Warning warning) noexcept {
     case Warning::kMeasurement:
     case Warning::kEnded:
     case Warning::kDataSheet:
+    case Warning::kBeyondTable:
     case Warning::kChange:
       break;
   }
@@ -197,6 +199,7 @@ ReportSection place_of(Warning warning) noexcept {
     case Warning::kMeasurement:
     case Warning::kEnded:
     case Warning::kDataSheet:
+    case Warning::kBeyondTable:
     case Warning::kChange:
       break;
   }
@@ -280,6 +283,7 @@ const char* words_of(Warning warning, const EvaluationResults& results) noexcept
              "second digit; use its first";
     case Warning::kEnded:
     case Warning::kDataSheet:
+    case Warning::kBeyondTable:
     case Warning::kChange:
       return words_of_contradiction(warning);
     case Warning::kMeasurement:

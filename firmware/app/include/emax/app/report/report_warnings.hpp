@@ -30,6 +30,7 @@ enum class Warning : std::uint8_t {
   kMeasurement,    ///< Points are flagged.
   kEnded,          ///< A fault has ended the sweep.
   kDataSheet,      ///< The sensitivity at the check frequency is 20 % off the data sheet's.
+  kBeyondTable,    ///< The sweep has frequencies beyond the ends of the reference's table.
   kChange,         ///< The check frequency's ratio has changed by 1 %, beyond its noise.
 };
 
@@ -38,7 +39,8 @@ inline constexpr Warning kWarnings[] = {
     Warning::kLowFrequency,  Warning::kShortTime,   Warning::kShortInBand,   Warning::kFewTrials,
     Warning::kNotStable,     Warning::kGuard,       Warning::kGuardInBand,   Warning::kCrowded,
     Warning::kTrialsRedrawn, Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
-    Warning::kMeasurement,   Warning::kEnded,       Warning::kDataSheet,     Warning::kChange,
+    Warning::kMeasurement,   Warning::kEnded,       Warning::kDataSheet,     Warning::kBeyondTable,
+    Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
@@ -46,7 +48,8 @@ inline constexpr Warning kWarnings[] = {
 bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept;
 
-/// The same of those on the sweep alone: kEnded, kDataSheet and kChange, and their lines.
+/// The same of those on the sweep alone: kEnded, kDataSheet, kBeyondTable and kChange, and their
+/// lines.
 bool contradicts(Warning warning, const SweepResults& sweep) noexcept;
 const char* words_of_contradiction(Warning warning) noexcept;
 
