@@ -36,7 +36,7 @@ class DigitalCertificate(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         missing = [f"--{name}" for name in ["maker", "model-name", "procedure", "place", "issue-date", "approved-by", "reference-id", "conditions"]
                    if not any(str(argument).startswith(f"--{name}=") for argument in arguments)]
-        is_item = "--model" not in arguments
+        is_item = "--points" in arguments  # Else parameters, or the simulated bench.
         self.assertEqual(result.stderr.decode(), "" if not (missing and is_item) else
                          f"emax: --certificate-number: ISO/IEC 17025 also asks for {', '.join(missing)}\n")
         self.assert_valid(self.directory / "c.xml")
@@ -122,7 +122,7 @@ class DigitalCertificate(ProgramTest):
             "Sensitivity": (model["S"], 2 * model["uS"], sensitivity),
             "Natural frequency": (model["f0"], 2 * model["uf0"], "\\hertz"),
             "Damping ratio": (model["beta"], 2 * model["ubeta"], "\\one"),
-            "Largest energy of the error of any signal within the limit":
+            "Largest energy found of the error of signals within the limit":
                 (energy["E"], results["uncertainty"]["U"], "\\volt\\tothe{2}\\second"),
             "Worst rms error in band, constant delay taken out, of sensitivity times limit":
                 (band["matched"]["rms_percent"], band["matched"]["U_percent"], "\\percent"),
@@ -148,7 +148,7 @@ class DigitalCertificate(ProgramTest):
         found = {quantity.find(f"{DCC}name/{DCC}content").text: quantity for quantity in root.iter(DCC + "quantity")}
         energy, percent = results["energy"]["E"], matched["rms_percent"]
         expected = {
-            "Largest energy of the in-band error of any signal within the limit":
+            "Largest energy found of the in-band error of signals within the limit":
                 (energy, known["u"], min(known["shortest"][0], energy), max(known["shortest"][1], energy)),
             "Worst rms error in band, constant delay taken out, of sensitivity times limit":
                 (percent, matched["u_percent"], *matched["instead_of_U_percent"]),
@@ -181,14 +181,17 @@ class DigitalCertificate(ProgramTest):
         def numbers(name, *path):
             return [float(number) for number in lists[name].find("/".join(SI + part for part in path)).text.split()]
 
-        for name, column, expanded in [("Frequency", 0, None), ("Amplitude", 1, 3), ("Phase", 2, 4)]:
-            values = numbers(name, "valueXMLList")
-            self.assertEqual(len(values), len(rows))
-            for value, row in zip(values, rows):
-                self.assertAlmostEqual(value, float(row[column]), delta=1e-12 * max(1.0, abs(value)))
-            if expanded is not None:
-                for U, row in zip(numbers(name, "expandedUncXMLList", "uncertaintyXMLList"), rows, strict=True):
-                    self.assert_rounded(0.0, U, 0.0, float(row[expanded]))
+        for value, row in zip(numbers("Frequency", "valueXMLList"), rows, strict=True):
+            self.assertAlmostEqual(value, float(row[0]), delta=1e-12 * value)
+        for name, column, expanded in [("Amplitude", 1, 3), ("Phase", 2, 4)]:
+            uncertainties = numbers(name, "expandedUncXMLList", "uncertaintyXMLList")
+            for value, U, row in zip(numbers(name, "valueXMLList"), uncertainties, rows, strict=True):
+                self.assert_rounded(value, U, float(row[column]), float(row[expanded]))
+        # As many decimals as U, zeros too.
+        values, uncertainties = (lists["Amplitude"].find("/".join(SI + part for part in path)).text.split()
+                                 for path in [["valueXMLList"], ["expandedUncXMLList", "uncertaintyXMLList"]])
+        for value, U in zip(values, uncertainties, strict=True):
+            self.assertEqual(len(value.partition(".")[2]), len(U.partition(".")[2]), (value, U))
 
     def statements(self, root) -> dict:
         found = {}
@@ -205,17 +208,67 @@ class DigitalCertificate(ProgramTest):
         self.assertGreater(results["model"]["chi2"], 50 * results["model"]["dof"])
         self.assertEqual(len(self.statements(root)["Warning"]), len(results["warnings"]))
         self.assertIn("chi2/dof is above", self.statements(root)["Warning"][0])
+        ratio = f"{math.sqrt(results['model']['chi2'] / results['model']['dof']):.3g}"
+        # What follows from it, and no claim of a distribution that the fit belies.
+        for words in [self.statements(root)["Warning"][0], self.statements(root)["Uncertainty"][0]]:
+            self.assertIn(f"too small by about the Birge ratio, {ratio}", words)
+        self.assertIn("the estimates themselves are not sure", self.statements(root)["Warning"][0])
+        self.assertIn("95.45 % do not hold", self.statements(root)["Uncertainty"][0])
+        self.assertEqual(list(root.iter(SI + "distribution")), [])
+        self.assertEqual(results["model"]["u_factor"], 1)
         plain = self.quantities(root)
         self.assertAlmostEqual(plain["Chi-square"][0], results["model"]["chi2"], delta=0.0006)
         birge = plain["Birge ratio"][0]
         self.assertAlmostEqual(birge, math.sqrt(results["model"]["chi2"] / results["model"]["dof"]), delta=0.0006)
         root = self.certificate(*table, "--birge", *options_of(LABELS))
         wide = self.quantities(root)
-        for name in ["Sensitivity", "Natural frequency", "Largest energy of the error of any signal within the limit"]:
+        for name in ["Sensitivity", "Natural frequency", "Largest energy found of the error of signals within the limit"]:
             # Both have two digits; E is nearly linear over so narrow a range.
             self.assertAlmostEqual(wide[name][1] / plain[name][1] / birge, 1.0, delta=0.1, msg=name)
-        self.assertIn("times the Birge ratio", self.statements(root)["Uncertainty"][0])
+        self.assertIn(f"times the Birge ratio, {ratio}; U of each point is as stated", self.statements(root)["Uncertainty"][0])
+        self.assertNotIn("too small by", self.statements(root)["Uncertainty"][0])
+        widened = json.loads((self.directory / "out/results.json").read_text())["model"]
+        self.assertAlmostEqual(widened["u_factor"], math.sqrt(widened["chi2"] / widened["dof"]), delta=1e-12 * widened["u_factor"])
+        self.assertEqual(widened["uS"], results["model"]["uS"], "the factor is not in it")
         self.assertIn("Birge ratio", "".join(root.find(f".//{DCC}measurementResults").itertext()))
+
+    def test_found_is_not_proven(self):
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        names = [quantity.find(f"{DCC}name/{DCC}content").text for quantity in root.iter(DCC + "quantity")]
+        self.assertFalse([name for name in names if "any signal" in name])
+        self.assertIn("leaves the search out", self.statements(root)["Uncertainty"][0])
+
+    def test_what_amplitudes_have_in_common(self):
+        """0.5 % of the reference at k = 2; the table states nothing else that is common."""
+        found = {quantity.find(f"{DCC}name/{DCC}content").text: quantity for quantity in
+                 self.certificate(*TABLE, *options_of(LABELS)).iter(DCC + "quantity")}
+        self.assertIn("holds 0.5 % (k = 2) that all have in common", found["Amplitude"].find(f"{DCC}description/{DCC}content").text)
+        self.assertIsNone(found["Phase"].find(DCC + "description"))
+        alone = self.certificate(*TABLE[:2], *options_of(LABELS))
+        self.assertNotIn("in common: one effect", "".join(alone.itertext()))
+
+    def test_distribution_is_that_of_the_parameters(self):
+        """Normal as stated; an error is another function of them, with an interval of its own."""
+        root = self.certificate(*TABLE, *options_of(LABELS))
+        normal = {quantity.find(f"{DCC}name/{DCC}content").text for quantity in root.iter(DCC + "quantity")
+                  if quantity.find(f".//{SI}distribution") is not None}
+        self.assertEqual(normal, {"Sensitivity", "Natural frequency", "Damping ratio"})
+
+    def test_a_short_time_is_noted(self):
+        """For the paper's sensor the leading error settles in 4.5084 ms, as the README says."""
+        statements = self.statements(self.certificate(*TABLE, *options_of(LABELS)))
+        self.assertRegex(statements["Length of the signals"][0], r"T = 2 ms is shorter than the settling time .*, 4\.5\d+ ms")
+        self.assertNotIn("Length of the signals", self.statements(self.certificate(*TABLE, "--time", "0.005", *options_of(LABELS))))
+
+    def test_chi_square_with_stated_crosstalk(self):
+        def description(path):
+            root = self.certificate("--points", path, "--reference-uncertainty", "0.5", *options_of(LABELS))
+            return next(quantity.find(f"{DCC}description/{DCC}content") for quantity in root.iter(DCC + "quantity")
+                        if quantity.find(f"{DCC}name/{DCC}content").text == "Chi-square")
+
+        self.assertIsNone(description(TABLE[1]))
+        (self.directory / "t.csv").write_text(TABLE[1].read_text() + "# shared: leak=0.01\n")
+        self.assertIn("not of the estimates printed", description(self.directory / "t.csv").text)
 
     def test_numbers_are_short(self):
         root = self.certificate(*TABLE, *options_of(LABELS))
@@ -276,7 +329,13 @@ class DigitalCertificate(ProgramTest):
         root = self.certificate(*options_of(LABELS))
         self.assertTrue(root.find(f".//{DCC}uniqueIdentifier").text.startswith("SIMULATION "))
         self.assertIn("no real sensor was measured", "".join(root.itertext()))
-        self.assertIn("ISO 16063-21", "".join(root.itertext()))
+        # No item was tested, whatever the labels are.
+        root = self.certificate(*options_of(LABELS | MORE))
+        self.assertNotIn("ISO 16063-21", "".join(root.itertext()))
+        self.assertIsNone(root.find(f".//{DCC}measuringEquipment"))
+        statements = self.statements(root)
+        self.assertIn("no item was tested", statements["Validity"][0])
+        self.assertTrue(statements["Traceability"][0].startswith("None"))
 
     def test_what_is_not_known_is_not_there(self):
         found = self.quantities(self.certificate("--model", "1.037,4073,0.3182", *options_of(LABELS)))

@@ -885,6 +885,7 @@ class Certificate(PageTest, ProgramTest):
         self.report(*TABLE1, *QUICK, *options_of(self.LABELS))
         self.open()
         self.assertIn("Calibration certificate K-17", self.browser.evaluate("document.querySelector('header').innerText"))
+        self.assertEqual(self.browser.evaluate("document.title"), "DJB A/1800/V, number K-17 - emax report")
         words = self.section()
         for part in ["no. 7, certificate R-1", "23 °C, 45 %", "Procedure: P-4", "coverage factor k = 2", "the item tested only",
                      "A. Chief", "Parameters by weighted least squares;", "as it was provided",
@@ -905,6 +906,9 @@ class Certificate(PageTest, ProgramTest):
             U = 2 * model[f"u{name}"]
             digits = 1 - math.floor(math.log10(U))
             self.assertEqual((row[1], row[4]), (f"{model[name]:.{digits}f}", f"{U:.{digits}f}"))
+            # Two digits of u, so that twice what is printed is U but for its last digit.
+            self.assertEqual(row[2], f"{U / 2:.{1 - math.floor(math.log10(U / 2))}f}")
+            self.assertAlmostEqual(2 * float(row[2]), float(row[4]), delta=1.6 * 10**-digits)
         # And so have the points of the table.
         points = self.browser.evaluate("[...document.querySelectorAll('#points tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
         self.assertEqual(len(points), self.content("frequency_response.csv").count("\n") - 1)
@@ -965,6 +969,33 @@ class Certificate(PageTest, ProgramTest):
         self.assertIn("no item was tested", self.section())
         self.assertNotIn("By the reference sensor", self.section())
         self.assertIn("End of the report", self.section())
+
+    def test_a_simulation_is_no_certificate(self):
+        result = self.report(*QUICK, *options_of(self.LABELS))
+        self.assertEqual(result.stderr, b"")
+        self.open()
+        header = self.browser.evaluate("document.querySelector('header').innerText")
+        self.assertIn("Simulation K-17", header)
+        self.assertNotIn("certificate", header.lower())
+        words = self.section()
+        for part in ["no item was tested", "None: the bench was simulated.", "End of the report"]:
+            self.assertIn(part, words)
+        for part in ["ISO 16063-21", "By the reference sensor", "the item tested only"]:
+            self.assertNotIn(part, words)
+
+    def test_a_poor_fit_says_what_it_means_for_U(self):
+        points = ["--points", DATA / "djb_a1800v.csv", *QUICK]
+        self.report(*points)
+        model = json.loads(self.content("results.json"))["model"]
+        ratio = f"{math.sqrt(model['chi2'] / model['dof']):.3g}"
+        too_small = f"too small by about the Birge ratio, {ratio}"
+        self.open()
+        self.assertIn(too_small, self.browser.evaluate("document.querySelector('.headline .warns').innerText"))
+        self.assertIn(too_small, self.section())
+        self.report(*points, "--birge")
+        self.open()
+        self.assertIn(f"widened by the Birge ratio, {ratio}", self.browser.evaluate("document.querySelector('.headline .warns').innerText"))
+        self.assertNotIn("too small by", self.section())
 
     def test_nasty_labels_below_the_pages(self):
         self.report(*MODEL, *QUICK, "--serial", "\"; } body { display: none } /* \\", "--certificate-number", "</style><script>x()</script>")

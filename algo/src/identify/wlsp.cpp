@@ -560,12 +560,13 @@ void Wlsp::add_effect(Effect effect, double (&covariance)[3][3]) const noexcept 
 // The points' own uncertainties know of drift, images and skew, not of leak and linearity. What no
 // change of the parameters takes up of those stays in the residuals. Each is one number of a
 // standard normal distribution, the same at all points: chi-square is judged at those numbers that
-// make it least, which is chi-square with the whole covariance.
+// make it least, which is chi-square with the whole covariance. The parameters move along: it is
+// that of the fit with that covariance, and not that of the estimates, which do not move.
 void Wlsp::explain_by_shared() noexcept {
   is_explained_ = false;
   explained_ = {};
   const SharedEffects& shared = response_.shared();
-  if (!(shared.leak + shared.leak_back + shared.linearity > 0.0)) {
+  if (!shared.is_beside()) {
     return;
   }
   Explained parts[kExplained] = {};

@@ -33,6 +33,8 @@ constexpr const char* kCoverageProbability = "0.9545";  // Of a normal distribut
 // A decimal number keeps so many digits through a double.
 constexpr int kMostDigits = 15;
 
+constexpr double kPercent = 100.0;
+
 std::string number(double value) {
   StringSink sink;
   app::TextWriter(sink).general(value, kMostDigits);
@@ -139,14 +141,16 @@ void add_warnings(XmlWriter& xml, const EvaluationResults& results,
                   const app::ReportContext& context) {
   for (const app::Warning warning : app::kWarnings) {
     if (holds(warning, results, context)) {
-      add_statement(
-          xml, "Warning",
-          xml_text(
-              sentence_of(words_of(warning, results), least_time_s(warning, results)).c_str()));
+      add_statement(xml, "Warning",
+                    xml_text(sentence_of(warning, results, context.leading_settling_s).c_str()));
     }
   }
   if (context.other_criterion != nullptr) {
     add_statement(xml, "Warning", xml_text(context.other_criterion));
+  }
+  const std::string note = note_on_time(results, context.leading_settling_s);
+  if (!note.empty()) {
+    add_statement(xml, "Length of the signals", note);
   }
 }
 
@@ -211,6 +215,7 @@ struct Known {
   bool is_one_sided = false;
   CoverageInterval interval = {};
   double probability = 0.0;
+  bool is_normal = false;
 };
 
 constexpr const char* kInsteadOfU =
@@ -231,7 +236,10 @@ void add_known(XmlWriter& xml, const Known& known, int decimals) {
   }
   xml.open("si:expandedUnc").element("si:uncertainty", number(kCoverageFactor * known.u, decimals));
   xml.element("si:coverageFactor", "2").element("si:coverageProbability", kCoverageProbability);
-  xml.element("si:distribution", "normal").close();
+  if (known.is_normal) {
+    xml.element("si:distribution", "normal");
+  }
+  xml.close();
 }
 
 void add_quantity(XmlWriter& xml, const char* name, double value, const char* unit,
@@ -304,13 +312,13 @@ Known known_of_energy(const EvaluationResults& results) {
 const char* name_of_energy(Criterion criterion) {
   switch (criterion) {
     case Criterion::kIntegralSquareError:
-      return "Largest energy of the error of any signal within the limit";
+      return "Largest energy found of the error of signals within the limit";
     case Criterion::kEnergyDifference:
-      return "Largest energy difference of any signal within the limit";
+      return "Largest energy difference found of signals within the limit";
     case Criterion::kInBandError:
       break;
   }
-  return "Largest energy of the in-band error of any signal within the limit";
+  return "Largest energy found of the in-band error of signals within the limit";
 }
 
 // Of the criterion, as a part of what it may be at most.
@@ -334,7 +342,7 @@ std::string interval_of_energy(const EvaluationResults& results) {
   }
   const int decimals = decimals_of_two_digits(kCoverageFactor * known.u);
   const CoverageInterval& interval = results.uncertainty.symmetric;
-  return "Coverage interval of " + number(100.0 * results.settings.probability) +
+  return "Coverage interval of " + number(kPercent * results.settings.probability) +
          " %: " + number(interval.low, decimals) + " to " + number(interval.high, decimals) +
          " V^2 s.";
 }
@@ -389,15 +397,17 @@ void add_quality(XmlWriter& xml, const EvaluationResults& results) {
   const WlspFit& fit = results.fit.result();
   open_result(xml, "Quality of the fit");
   if (results.trial_scale() > 1.0) {
-    add_text(xml, "dcc:text",
-             "All uncertainties of the parameters and of the errors are those stated times the "
-             "Birge ratio.");
+    add_text(
+        xml, "dcc:text",
+        "U of the parameters and of the errors is times the Birge ratio; U of the points is as "
+        "stated.");
   }
   constexpr int kDecimals = 3;
   const auto add = [&xml](const char* name, double value) {
     add_quantity(xml, name, rounded(value, kDecimals), "\\one");
   };
-  add("Chi-square", fit.chi2);
+  add_quantity(xml, "Chi-square", rounded(fit.chi2, kDecimals), "\\one", {},
+               chi_square_statement(results));
   add("Degrees of freedom", static_cast<double>(fit.dof));
   add("Birge ratio", fit.birge_ratio);
   if (!results.is_damping_open()) {
@@ -412,10 +422,14 @@ void add_quality(XmlWriter& xml, const EvaluationResults& results) {
   xml.close().close();
 }
 
-void add_parameters(XmlWriter& xml, const EvaluationResults& results) {
+// Jointly normal as stated, which a fit that warns belies; the errors are a function of them.
+void add_parameters(XmlWriter& xml, const EvaluationResults& results,
+                    const app::ReportContext& context) {
   const Accelerometer& device = results.device.estimate;
-  const auto known = [&results](std::size_t i) {
-    return Known{results.trial_scale() * std::sqrt(results.covariance(i, i)), false, {}, 0.0};
+  const bool is_normal = !holds(app::Warning::kFit, results, context);
+  const auto known = [&results, is_normal](std::size_t i) {
+    const double u = results.trial_scale() * std::sqrt(results.covariance(i, i));
+    return Known{u, false, {}, 0.0, is_normal};
   };
   open_result(xml, "Parameters of the model of second order");
   add_quantity(xml, "Sensitivity", device.sensitivity, kSensitivityUnit, known(0));
@@ -432,19 +446,40 @@ struct Column {
   const char* unit;
   std::string values;
   std::string uncertainties;
+  std::string description = "";
 };
 
 void append_number(std::string& list, double value) {
   list += (list.empty() ? "" : " ") + number(value);
 }
 
-void append_expanded(std::string& list, double expanded) {
-  list += (list.empty() ? "" : " ") + number(expanded, decimals_of_two_digits(expanded));
+// U with two digits, and the value with as many decimals.
+void append_known(Column& column, double value, double expanded) {
+  const int decimals = decimals_of_two_digits(expanded);
+  column.values += (column.values.empty() ? "" : " ") + number(value, decimals);
+  column.uncertainties += (column.uncertainties.empty() ? "" : " ") + number(expanded, decimals);
+}
+
+// Which part of U moves all amplitudes alike.
+std::string words_on_common_part(const FrequencyResponse& response) {
+  if (!response.has_common()) {
+    return "";
+  }
+  constexpr int kDigits = 3;
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.text("U of each amplitude holds ");
+  out.general(kCoverageFactor * kPercent * response.common()[0], kDigits);
+  out.text(" % (k = 2) that all have in common: one effect, which moves them alike.");
+  return sink.text();
 }
 
 void add_column(XmlWriter& xml, const Column& column) {
   xml.open("dcc:quantity");
   add_text(xml, "dcc:name", column.name);
+  if (!column.description.empty()) {
+    add_text(xml, "dcc:description", column.description);
+  }
   xml.open("si:realListXMLList").element("si:valueXMLList", column.values);
   xml.element("si:unitXMLList", column.unit);
   if (!column.uncertainties.empty()) {
@@ -461,7 +496,7 @@ void add_response(XmlWriter& xml, const EvaluationResults& results) {
   }
   const FrequencyResponse& response = results.fit.response();
   Column frequency = {"Frequency", "\\hertz", "", ""};
-  Column amplitude = {"Amplitude", kSensitivityUnit, "", ""};
+  Column amplitude = {"Amplitude", kSensitivityUnit, "", "", words_on_common_part(response)};
   Column phase = {"Phase", "\\degree", "", ""};
   bool has_phases = true;
   for (std::size_t i = 0; i < response.size(); ++i) {
@@ -471,11 +506,11 @@ void add_response(XmlWriter& xml, const EvaluationResults& results) {
                                 beside.re * point.amplitude);
     const double u_phase_deg = kDegreesPerRadian * std::hypot(point.u_phase_rad, beside.im);
     append_number(frequency.values, point.frequency_hz);
-    append_number(amplitude.values, point.amplitude);
-    append_expanded(amplitude.uncertainties, kCoverageFactor * u);
+    append_known(amplitude, point.amplitude, kCoverageFactor * u);
     has_phases = has_phases && is_phase_known(point);
-    append_number(phase.values, kDegreesPerRadian * point.phase_rad);
-    append_expanded(phase.uncertainties, kCoverageFactor * u_phase_deg);
+    if (is_phase_known(point)) {
+      append_known(phase, kDegreesPerRadian * point.phase_rad, kCoverageFactor * u_phase_deg);
+    }
   }
   open_result(xml, "Frequency response");
   xml.open("dcc:list");
@@ -490,7 +525,11 @@ void add_response(XmlWriter& xml, const EvaluationResults& results) {
 void add_methods(XmlWriter& xml, const app::ReportContext& context) {
   const char* const procedure = label_of(context.labels, CertificateLabel::kProcedure);
   xml.open("dcc:usedMethods");
-  if (context.measurement != nullptr) {
+  if (is_simulated(context)) {
+    xml.open("dcc:usedMethod");
+    add_text(xml, "dcc:name", "Simulated comparison with a reference sensor, stepped sine");
+    xml.close();
+  } else if (context.measurement != nullptr) {
     xml.open("dcc:usedMethod");
     add_text(xml, "dcc:name", "Comparison with a reference sensor, back to back, stepped sine");
     xml.element("dcc:norm", "ISO 16063-21").close();
@@ -604,7 +643,7 @@ std::string certificate_xml(const EvaluationResults& results, const app::ReportC
   add_measuring(xml, context);
   xml.open("dcc:results");
   add_errors(xml, results);
-  add_parameters(xml, results);
+  add_parameters(xml, results, context);
   add_quality(xml, results);
   add_response(xml, results);
   xml.close().close().close().close();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "emax/app/report/measurement.hpp"
+#include "emax/app/report/report_warnings.hpp"
 
 #include "desk/cli/console.hpp"
 #include "desk/cli/label_rows.hpp"
@@ -29,7 +30,9 @@ void append_row(std::string& html, const char* name, const std::string& words) {
 
 std::string method_of(const app::EvaluationResults& results, const app::ReportContext& context) {
   std::string words;
-  if (context.measurement != nullptr) {
+  if (is_simulated(context)) {
+    words = "Simulated comparison with a reference sensor, by stepped sines. ";
+  } else if (context.measurement != nullptr) {
     words =
         "Comparison with a reference sensor, back to back, by stepped sines, in the manner of "
         "ISO 16063-21. ";
@@ -87,6 +90,27 @@ void append_signature(std::string& html, const app::Labels& labels) {
           (name == nullptr ? std::string() : ": " + quoted(name)) + "</p>\n";
 }
 
+// What a poor fit means for U.
+std::string words_on_birge(const app::EvaluationResults& results,
+                           const app::ReportContext& context) {
+  const bool is_widened = results.trial_scale() > 1.0;
+  if (!is_widened && !holds(app::Warning::kFit, results, context)) {
+    return "";
+  }
+  StringSink sink;
+  app::TextWriter out(sink);
+  if (is_widened) {
+    out.text(" U of parameters and errors is also times the Birge ratio, ");
+    out.general(results.trial_scale(), 3).text("; U of each point is as stated.");
+  } else {
+    out.text(
+        " U of parameters and errors is not widened, though the points do not fit: it is too ");
+    out.text("small by about the Birge ratio, ").general(results.fit.result().birge_ratio, 3);
+    out.text(", and 95.45 % do not hold for it.");
+  }
+  return sink.text();
+}
+
 }  // namespace
 
 const char* certificate_number(const app::Labels& labels) noexcept {
@@ -97,11 +121,11 @@ std::string uncertainty_statement(const app::EvaluationResults& results,
                                   const app::ReportContext& context) {
   std::string words =
       "U is the standard uncertainty times the coverage factor k = 2. For a normal distribution "
-      "that covers 95.45 %. Standard uncertainties are propagated as JCGM 100 and JCGM 101 "
-      "describe.";
-  if (results.trial_scale() > 1.0) {
-    words += " All U are taken times the Birge ratio.";
-  }
+      "that covers 95.45 %; the errors need not have one. Standard uncertainties are propagated as "
+      "JCGM 100 and JCGM 101 describe. U of an error is that of the error found, by the "
+      "parameters' uncertainties, and leaves the search out: a signal with a larger error may "
+      "exist, up to the bound that is proven at the estimates, where there is one.";
+  words += words_on_birge(results, context);
   if (context.measurement != nullptr) {
     words +=
         " U takes the reference's phase, and a change of its sensitivity over frequency beyond its "
@@ -112,6 +136,14 @@ std::string uncertainty_statement(const app::EvaluationResults& results,
         "the table's uncertainties contain it, U of the sensitivity is too small.";
   }
   return words;
+}
+
+std::string chi_square_statement(const app::EvaluationResults& results) {
+  if (!results.fit.response().shared().is_beside()) {
+    return "";
+  }
+  return "Of the parameters and the sizes of stated crosstalk and linearity that make it least "
+         "together, not of the estimates printed, which are fitted without those effects.";
 }
 
 std::string gain_statement(const app::EvaluationResults& results) {
@@ -128,6 +160,9 @@ std::string gain_statement(const app::EvaluationResults& results) {
 }
 
 std::string validity_statement(const app::ReportContext& context) {
+  if (is_simulated(context)) {
+    return "The results are those of a simulated bench: no item was tested.";
+  }
   if (!is_of_item(context)) {
     return "The results are computed from parameters as given: no item was tested.";
   }
@@ -141,6 +176,9 @@ std::string validity_statement(const app::ReportContext& context) {
 }
 
 std::string traceability_statement(const app::ReportContext& context) {
+  if (is_simulated(context)) {
+    return "None: the bench was simulated.";
+  }
   if (!is_of_item(context)) {
     return "None: the parameters were given.";
   }
@@ -171,7 +209,9 @@ std::string labels_not_stated(const app::ReportContext& context) {
 std::string running_words(const app::ReportContext& context) {
   const app::Labels& labels = context.labels;
   const char* const number = certificate_number(labels);
-  const char* const kind = is_of_item(context) ? "Certificate " : "Computation ";
+  const char* const kind = is_simulated(context) ? "Simulation "
+                           : is_of_item(context) ? "Certificate "
+                                                 : "Computation ";
   std::string words = number == nullptr ? "Report" : kind + in_one_line(number);
   words += ", " + (labels.device == nullptr ? "accelerometer" : in_one_line(labels.device));
   return words + (labels.serial == nullptr ? ", serial number not given"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/report/measurement.hpp"
 #include "emax/app/report/report_context.hpp"
 
 namespace emax::desk {
@@ -19,15 +20,18 @@ inline constexpr char kReproduction[] =
     "This certificate may not be reproduced other than in full except with the written approval of "
     "the issuing laboratory.";
 
-/// @returns Whether an item was tested; else the parameters were given.
+/// @returns Whether an item was tested; else the parameters were given, or the bench was simulated.
 constexpr bool is_of_item(const app::ReportContext& context) noexcept {
-  return context.measurement != nullptr || context.source_name != nullptr;
+  return (context.measurement != nullptr || context.source_name != nullptr) &&
+         !is_simulated(context);
 }
 
 /// @returns Sentences, as plain text: what U is and what it does not hold, how the gain goes into
 /// it, what the results apply to, and what they are traceable to.
 std::string uncertainty_statement(const app::EvaluationResults& results,
                                   const app::ReportContext& context);
+/// What chi-square is of, where stated shared effects come into it; empty where none do.
+std::string chi_square_statement(const app::EvaluationResults& results);
 std::string gain_statement(const app::EvaluationResults& results);
 std::string validity_statement(const app::ReportContext& context);
 std::string traceability_statement(const app::ReportContext& context);

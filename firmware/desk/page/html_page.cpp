@@ -323,7 +323,8 @@ std::vector<app::Warning> warnings_of(const EvaluationResults& results,
 
 // How many there are and which, beside the number that they are about.
 void append_warnings(std::string& html, const EvaluationResults& results,
-                     const std::vector<app::Warning>& warnings, const char* other_criterion) {
+                     const std::vector<app::Warning>& warnings, double settling_s,
+                     const char* other_criterion) {
   const bool is_other = other_criterion != nullptr;
   if (warnings.empty() && !is_other) {
     return;
@@ -334,8 +335,7 @@ void append_warnings(std::string& html, const EvaluationResults& results,
             words_of([&](TextWriter& out) { out.text(other_criterion); }) + "</li>";
   }
   for (const app::Warning warning : warnings) {
-    const std::string words =
-        sentence_of(words_of(warning, results), least_time_s(warning, results));
+    const std::string words = sentence_of(warning, results, settling_s);
     list += "<li>" + link_to(place_of(warning)) + ": " +
             words_of([&](TextWriter& out) { out.text(words.c_str()); }) + "</li>";
   }
@@ -346,14 +346,11 @@ void append_warnings(std::string& html, const EvaluationResults& results,
 
 // What no number of warnings tells: a short T, below the limit of a warning.
 void append_short_time(std::string& html, const EvaluationResults& results, double settling_s) {
-  if (results.settings.duration_s < settling_s) {
+  const std::string words = note_on_time(results, settling_s);
+  if (!words.empty()) {
     append_figure(html, " class=\"notes\"", "Note",
-                  link_to(app::ReportSection::kInBand) + ": " + words_of([&](TextWriter& out) {
-                    out.text("T = ").general(kMilli * results.settings.duration_s, 10);
-                    out.text(" ms is shorter than the settling time of this error, ");
-                    out.general(kMilli * settling_s, 4);
-                    out.text(" ms, so it has not developed: a longer signal may make more of it");
-                  }));
+                  link_to(app::ReportSection::kInBand) + ": " +
+                      words_of([&](TextWriter& out) { out.text(words.c_str()); }));
   }
 }
 
@@ -362,7 +359,7 @@ void append_headline(std::string& html, const EvaluationResults& results, double
   const bool is_clear = warnings.empty() && other_criterion == nullptr;
   html += std::string("<dl class=\"headline") + (is_clear ? "" : " doubtful") + "\">\n";
   append_leading_figure(html, results);
-  append_warnings(html, results, warnings, other_criterion);
+  append_warnings(html, results, warnings, settling_s, other_criterion);
   append_short_time(html, results, settling_s);
   append_second_figure(html, results);
   append_papers_figure(html, results);
@@ -385,12 +382,15 @@ std::string name_of(const app::Labels& labels) {
 std::string opening(const app::ReportContext& context) {
   const bool is_marked = is_simulated(context);
   const char* const number = certificate_number(context.labels);
-  const char* const kind = is_of_item(context) ? "Calibration certificate " : "Computation ";
+  const char* const kind = is_marked             ? "Simulation "
+                           : is_of_item(context) ? "Calibration certificate "
+                                                 : "Computation ";
   const std::string about = number == nullptr
                                 ? std::string("The largest error that this accelerometer can make")
                                 : kind + quoted(number) + ": the largest error that it can make";
+  const std::string numbered = number == nullptr ? "" : ", number " + quoted(number);
   return page_opening(name_of(context.labels),
-                      is_marked ? " (simulation) - emax report" : " - emax report", about,
+                      numbered + (is_marked ? " (simulation)" : "") + " - emax report", about,
                       is_marked ? app::kSimulationBanner : "", running_words(context));
 }
 
@@ -457,6 +457,7 @@ void write_page(const EvaluationResults& results, const app::ReportContext& give
                 const std::vector<PagePicture>& pictures, TextWriter& out) {
   app::ReportContext context = given;
   context.rounds_to_u = certificate_number(given.labels) != nullptr;
+  const double settling_s = given.leading_settling_s;
   std::string body;
   HtmlWords words(body);
   TextWriter report(words);
@@ -467,7 +468,6 @@ void write_page(const EvaluationResults& results, const app::ReportContext& give
 
   const std::vector<app::Warning> warnings = warnings_of(results, context);
   std::string html = opening(context);
-  const double settling_s = settling_time_of_leading_s(results);
   append_headline(html, results, settling_s, warnings, context.other_criterion);
   append_conditions(html, results, settling_s, context.in_g);
   if (warnings.empty() && context.other_criterion == nullptr) {

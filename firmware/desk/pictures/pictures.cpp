@@ -589,13 +589,18 @@ constexpr Kind kKinds[] = {
      "Left: the measured points and the fitted model. Right: how far the points are from the "
      "model, with the uncertainties of each point's own (k = 2); shaded, what all amplitudes have "
      "in common, which moves them alike. With a good fit most bars cross the dashed line and what "
-     "remains has no shape; a bow, a step or a resonance there is what the model does not know of.",
+     "remains has no shape. A bow, a step or a resonance there is what the model does not know of, "
+     "or "
+     "an effect that points share: stated clock, crosstalk and linearity can bend it, and no bar "
+     "holds them.",
      nullptr, has_points, write_frequency_response},
     {kPictureFiles[1], app::ReportSection::kErrorSystem, "impulse responses",
      "The error system k is the sensor's response less that of the reference filter. From where "
-     "it has settled on, a longer signal adds little that is new.",
+     "it has settled on, k adds little to what an error can reach; E still grows with T.",
      "The error system k: what the filter passes of the sensor's response less that of an ideal "
-     "sensor. From where it has settled on, a longer signal adds little that is new.",
+     "sensor. From where it has settled on, k adds little to what an error can reach; E still "
+     "grows "
+     "with T.",
      always, write_impulse_response},
     {kPictureFiles[2], app::ReportSection::kEnergy, "the worst signal found",
      "Above: the signal within ±a with the largest E that was found; it only ever switches between "

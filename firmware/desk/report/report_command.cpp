@@ -31,6 +31,7 @@
 #include "desk/report/damping_words.hpp"
 #include "desk/report/failure_words.hpp"
 #include "desk/report/figure_mark.hpp"
+#include "desk/report/figure_settling.hpp"
 #include "desk/report/fit_causes.hpp"
 #include "desk/trials/thread_helper.hpp"
 
@@ -344,6 +345,8 @@ Problem run_report(Span<const std::string_view> arguments) {
   const FigureMark mark = problem_of_work ? FigureMark{} : mark_of_figures(evaluation, context);
   context.mark = or_null(mark.words);
   context.marked = mark.rows;
+  context.leading_settling_s =
+      evaluation.stage == app::Stage::kDone ? settling_time_of_leading_s(evaluation) : 0.0;
   context.other_criterion = criterion_changed.line.empty() ? nullptr : kOtherCriterion;
   const Results results = {evaluation, context};
   if (problem_of_work && is_sensitivity_alone(evaluation, options)) {

@@ -53,6 +53,9 @@ struct SharedEffects {
   double leak = 0.0;       ///< Reference seen in the device's channel: of K, in V/(m/s^2).
   double leak_back = 0.0;  ///< Device seen in the reference's: of 1/K, in (m/s^2)/V.
   double linearity = 0.0;  ///< Of the largest amplitude A, relative, as A^2.
+
+  /// @returns Whether chi-square has sizes of leak and linearity among its unknowns: see `Wlsp`.
+  constexpr bool is_beside() const noexcept { return leak + leak_back + linearity > 0.0; }
 };
 
 /// @returns The time that a point takes, where those above the corner take 1.

@@ -28,9 +28,12 @@ struct WlspFit {
   double u_natural_frequency_hz = 0.0;
   double u_damping = 0.0;
   double covariance[kWlspParameters][kWlspParameters] = {};
-  double mu[3] = {};           ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
-  double u_mu[3] = {};         ///< Their standard uncertainties.
-  double chi2 = 0.0;           ///< Chi-square with the whole covariance that the points state.
+  double mu[3] = {};    ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
+  double u_mu[3] = {};  ///< Their standard uncertainties.
+  /// Chi-square with the whole covariance that the points state: the least for any parameters and
+  /// any sizes of leak and linearity. Without those it is that of `mu`; with them `mu`, which is
+  /// fitted without their covariance, has more.
+  double chi2 = 0.0;
   double common_effect = 0.0;  ///< The common effect found, in units of its standard uncertainty.
   double birge_ratio = 0.0;    ///< sqrt(chi2/dof): 1 where the model and the uncertainties hold.
   std::uint32_t unknown_phases = 0;  ///< Points of which only the magnitude was fitted.

@@ -201,7 +201,7 @@ void write_common(const SweepResults& sweep, ReportWriter& out) noexcept {
     out.text("not known").line();
   }
   percent(out.indent().text("together "), common.total).text(" %; expanded (k = 2) ");
-  out.general(kCoverageFactor * kPercent * common.total, 6).text(" %").line();
+  out.general(kCoverageFactor * kPercent * common.total, 3).text(" %").line();
 }
 
 // The table of points with their budgets

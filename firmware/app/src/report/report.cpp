@@ -187,8 +187,9 @@ struct Estimate {
 };
 
 void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
-  const int decimals =
-      out.rounds_to_u() ? decimals_of(estimate.expanded, 2) : decimals_for(estimate.u);
+  const bool is_short = out.rounds_to_u();
+  const int decimals = is_short ? decimals_of(estimate.expanded, 2) : decimals_for(estimate.u);
+  const int of_u = is_short ? decimals_of(estimate.u, 2) : decimals;  // Twice it rounds to U.
   out.part(ReportPart::kLine);
   out.cell(0).text("  ").left(11).text(estimate.name);
   if (estimate.is_held) {
@@ -200,8 +201,8 @@ void write_estimate(const Estimate& estimate, ReportWriter& out) noexcept {
     return;
   }
   out.cell(15).fixed(estimate.value, decimals);
-  out.cell(15).fixed(estimate.u, decimals);
-  out.cell(15).fixed(estimate.u_by_draws, decimals);
+  out.cell(15).fixed(estimate.u, of_u);
+  out.cell(15).fixed(estimate.u_by_draws, of_u);
   out.cell(15).fixed(estimate.expanded, decimals);
   out.cell(0).text("  ").text(estimate.unit).line();
 }
@@ -362,6 +363,11 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
   write_common_part(results.fit, out);
   out.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
   out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
+  if (results.fit.response().shared().is_beside()) {
+    out.indent().text("the least of any S, f0, beta and stated crosstalk and linearity together,");
+    out.line();
+    out.indent().text("not of these estimates; the residuals are those of it").line();
+  }
   out.label("Birge ratio").general(fit.birge_ratio, 4);
   out.text(" (1 where model and uncertainties hold)").line();
   write_correlations(results, out);
@@ -715,7 +721,7 @@ void write_report(const EvaluationResults& results, const ReportContext& context
   }
   write_error_system(results, writer);
   write_energy(results, writer);
-  write_in_band(results, writer);
+  write_in_band(results, context.leading_settling_s, writer);
   write_uncertainty(results, writer);
   write_monte_carlo(results, writer);
   write_trend(results, writer);

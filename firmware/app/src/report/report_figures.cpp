@@ -456,8 +456,8 @@ void write_delay_taken_out(const EvaluationResults& results, ReportWriter& out) 
   }
 }
 
-void write_band_settling(const EvaluationResults& results, ReportWriter& out) noexcept {
-  const SettlingTime& settling = results.band_settling;
+void write_band_settling(const SettlingTime& settling, const EvaluationResults& results,
+                         ReportWriter& out) noexcept {
   if (results.settings.criterion != Criterion::kInBandError &&
       results.settings.duration_s < settling.time_s) {
     write_settling_time("5 % settling, in band", settling, out);
@@ -468,7 +468,8 @@ void write_band_settling(const EvaluationResults& results, ReportWriter& out) no
 }  // namespace
 
 /// By their names and in the order of the figures.
-void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept {
+void write_in_band(const EvaluationResults& results, double leading_settling_s,
+                   ReportWriter& out) noexcept {
   if (!results.band.exists()) {
     return;
   }
@@ -491,7 +492,9 @@ void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept
     }
     write_figure(results, figure, out);
     if (is_band) {
-      write_band_settling(results, out);
+      write_band_settling(results.band_settling, results, out);
+    } else if (!is_band_first) {
+      write_band_settling({leading_settling_s, leading_settling_s > 0.0}, results, out);
     }
   }
   if (results.band.uncertainty.exists()) {

@@ -31,7 +31,8 @@ void write_short_time(const char* name, const SettlingTime& settling,
                       const EvaluationResults& results, ReportWriter& out) noexcept;
 
 /// The in-band errors, in V^2 s and with their signals.
-void write_in_band(const EvaluationResults& results, ReportWriter& out) noexcept;
+void write_in_band(const EvaluationResults& results, double leading_settling_s,
+                   ReportWriter& out) noexcept;
 
 /// What JCGM 101 gives for the energy of the criterion.
 void write_uncertainty(const EvaluationResults& results, ReportWriter& out) noexcept;

@@ -57,6 +57,7 @@ void write_model(const EvaluationResults& results, const ReportContext& context,
     json.null("chi2");
     json.null("dof");
   }
+  json.number("u_factor", results.trial_scale());
   if (is_fit && results.fit.response().has_common()) {
     json.number("common_percent", kCoverageFactor * kPercent * results.fit.response().common()[0]);
   } else {
@@ -829,7 +830,8 @@ void write_sensitivity_json(const EvaluationResults& results, const ReportContex
   json.null("f0");
   json.null("beta");
   json.number("uS", judgement.u_sensitivity);
-  for (const char* number : {"uf0", "ubeta", "covariance", "chi2", "dof", "common_percent"}) {
+  for (const char* number :
+       {"uf0", "ubeta", "covariance", "chi2", "dof", "u_factor", "common_percent"}) {
     json.null(number);
   }
   json.words("source", source_of(results, context.measurement));

@@ -53,6 +53,8 @@ struct ReportContext {
   /// A warning that the results are those of another criterion than was asked for; null if not.
   const char* other_criterion = nullptr;
   bool rounds_to_u = false;  ///< Two digits of U and values to match, as on a certificate.
+  /// Settling time of the error in band that leads the figures; 0 for none, or if nobody knows.
+  double leading_settling_s = 0.0;
 };
 
 /// m/s^2, exactly (ISO 80000-3).
