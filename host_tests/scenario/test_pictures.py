@@ -934,6 +934,12 @@ class Certificate(PageTest, ProgramTest):
             "reference-id": "Traceability", "conditions": "Conditions", "place": "Place of the measurement",
             "issue-date": "Date of issue", "approved-by": "Approved by",
         }
+        told = self.report(*TABLE1, *QUICK, "--certificate-number", "K-17", "--operator", "J. Doe").stderr.decode()
+        self.open()
+        # Who measured is not who answers for it.
+        self.assertEqual(self.browser.evaluate("document.querySelector('.signature').innerText"),
+                         "Date and signature of who approves: name not stated")
+        self.assertIn("date of its receipt, deviations from the procedure", self.section())
         told = self.report(*TABLE1, *QUICK, "--certificate-number", "K-17").stderr.decode()
         for name in rows:
             self.assertIn(f"--{name}", told)

@@ -81,13 +81,16 @@ void append_missing(std::string& html, const app::Labels& labels) {
   }
 }
 
+// What ISO/IEC 17025 asks for besides, and no option of its own takes.
+constexpr const char* kNotRecorded =
+    "The condition of the item, the date of its receipt, deviations from the procedure and, of a "
+    "table, who provided it, unless a note or another label says so.";
+
 // Who takes responsibility, on a line to sign on.
 void append_signature(std::string& html, const app::Labels& labels) {
   const char* const approver = label_of(labels, CertificateLabel::kApprover);
-  const char* const name = approver != nullptr ? approver : labels.operated_by;
-  html += std::string("<p class=\"signature sign\">Date and signature") +
-          (approver != nullptr ? " of who approves" : "") +
-          (name == nullptr ? std::string() : ": " + quoted(name)) + "</p>\n";
+  html += "<p class=\"signature sign\">Date and signature of who approves: " +
+          (approver == nullptr ? std::string("name not stated") : quoted(approver)) + "</p>\n";
 }
 
 // What a poor fit means for U.
@@ -236,6 +239,9 @@ std::string certificate_of(const app::EvaluationResults& results,
     append_row(html, "Gain", gain_statement(results));
   }
   append_row(html, "Validity", validity_statement(context));
+  if (has_number && is_of_item(context)) {
+    append_row(html, "Not recorded", kNotRecorded);
+  }
   if (has_number) {
     append_row(html, "Reproduction", kReproduction);
   }

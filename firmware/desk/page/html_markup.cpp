@@ -20,7 +20,7 @@ struct SectionName {
 
 constexpr SectionName kSections[] = {
     {ReportSection::kTitle, "title", ""},
-    {ReportSection::kLabels, "labels", "Labels"},
+    {ReportSection::kLabels, "labels", "Item and laboratory"},
     {ReportSection::kFigures, "figures", "The figures"},
     {ReportSection::kInput, "input", "What was put in"},
     {ReportSection::kFault, "fault", "Fault"},

@@ -364,9 +364,9 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
   out.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
   out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
   if (results.fit.response().shared().is_beside()) {
-    out.indent().text("the least of any S, f0, beta and stated crosstalk and linearity together,");
-    out.line();
-    out.indent().text("not of these estimates; the residuals are those of it").line();
+    out.indent()
+        .text("with crosstalk and linearity fitted, too, so not of the estimates above")
+        .line();
   }
   out.label("Birge ratio").general(fit.birge_ratio, 4);
   out.text(" (1 where model and uncertainties hold)").line();
