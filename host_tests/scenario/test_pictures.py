@@ -823,7 +823,7 @@ class Page(PageTest, ProgramTest):
             self.assertGreater(text - paper, 255)  # Light on dark, by a third of the range.
         # The pictures are black on white, and turned over as a whole: white paper becomes 8 % of white.
         self.assertEqual(colours[2], [0, 3 * 255])
-        self.assertIn("invert(0.92)", self.browser.evaluate("getComputedStyle(document.querySelector('figure svg')).filter"))
+        self.assertIn("invert(0.914)", self.browser.evaluate("getComputedStyle(document.querySelector('figure svg')).filter"))
         self.browser.call("Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}])
         self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('figure svg')).filter"), "none")
 

@@ -721,7 +721,8 @@ void write_report(const EvaluationResults& results, const ReportContext& context
   }
   write_error_system(results, writer);
   write_energy(results, writer);
-  write_in_band(results, context.leading_settling_s, writer);
+  // The text is that of a board, which does not search for that time.
+  write_in_band(results, writer.is_plain() ? 0.0 : context.leading_settling_s, writer);
   write_uncertainty(results, writer);
   write_monte_carlo(results, writer);
   write_trend(results, writer);
