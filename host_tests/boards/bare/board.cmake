@@ -5,7 +5,7 @@ emax_declare_board(
   CORE cortex-m3
   CLOCK_HZ 1000000
   INTERRUPTS 102
-  BUDGET 266240 122880 8192
+  BUDGET 274432 122880 8192
   FLASH ${CMAKE_COMMAND} -E echo "A probe would now write @IMAGE@"
   INCLUDES ${EMAX_BOARD_COMMON}/cortex_m/include
   SOURCES
