@@ -73,7 +73,7 @@ class LoopbackRun {
   void begin_target() noexcept;
   void end_target() noexcept;
   Status check_wire(const SineFitResult& drive, const SineFitResult& reference,
-                const SineFitResult& device) noexcept;
+                    const SineFitResult& device) noexcept;
   Status evaluate() noexcept;
   void end(Status status) noexcept;
 
