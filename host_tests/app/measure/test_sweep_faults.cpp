@@ -262,7 +262,7 @@ TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitWithADeviceOfFewVolts) {
   }
 }
 
-TEST(SweepFaults, AnyTimesOfAnExchangeAndAnotherFaultKeepTheLimitWithADeviceOfFewVolts) {
+TEST(SweepFaults, AnExchangeAndAnotherFaultAnyTimeWithADeviceOfFewVolts) {
   Times times;
   const std::uint64_t runs = from_environment("EMAX_FAULT_RUNS", 20);
   for (const Expectation& other : kFaults) {
