@@ -183,15 +183,23 @@ class Times {
   std::uint64_t last_ = from_environment("EMAX_FAULT_LAST", 570000);
 };
 
-TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration) {
+/// Calls `run(i, seed, fault)` for the i-th random time of each fault.
+template <typename Run>
+void at_any_times_of_any_fault(Run run) {
   Times times;
   const std::uint64_t runs = from_environment("EMAX_FAULT_RUNS", 20);
   for (const Expectation& one : kFaults) {
     for (std::uint64_t i = 0; i < runs; ++i) {
       const std::uint64_t seed = times.next();
-      (void)run_near_the_limit(seed, {one.fault, times.next()}, {});
+      run(i, seed, emax::sim::Fault{one.fault, times.next()});
     }
   }
+}
+
+TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration) {
+  at_any_times_of_any_fault([](std::uint64_t, std::uint64_t seed, const emax::sim::Fault& fault) {
+    (void)run_near_the_limit(seed, fault, {});
+  });
 }
 
 TEST(SweepFaults, AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration) {
@@ -251,15 +259,9 @@ Status run_of_a_device_of_few_volts(std::uint64_t seed, double sensitivity, doub
 constexpr double kFewVolts[] = {0.1, 0.2, 0.4};
 
 TEST(SweepFaults, AnyTimeOfAnyFaultKeepsTheLimitWithADeviceOfFewVolts) {
-  Times times;
-  const std::uint64_t runs = from_environment("EMAX_FAULT_RUNS", 20);
-  for (const Expectation& one : kFaults) {
-    for (std::uint64_t i = 0; i < runs; ++i) {
-      const std::uint64_t seed = times.next();
-      (void)run_of_a_device_of_few_volts(seed, kFewVolts[i % 3], 2.0, {one.fault, times.next()},
-                                         {});
-    }
-  }
+  at_any_times_of_any_fault([](std::uint64_t i, std::uint64_t seed, const emax::sim::Fault& fault) {
+    (void)run_of_a_device_of_few_volts(seed, kFewVolts[i % 3], 2.0, fault, {});
+  });
 }
 
 TEST(SweepFaults, AnExchangeAndAnotherFaultAnyTimeWithADeviceOfFewVolts) {

@@ -6,7 +6,6 @@
 
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
-#include "emax/base/units.hpp"
 
 namespace emax::app {
 namespace {
@@ -15,11 +14,6 @@ namespace {
 constexpr double kRest_s = 2.0;
 constexpr double kMuchScatter = 1e-4;  // Relative, of the mean of a point's repeats.
 constexpr double kHiddenShare = 0.5;
-constexpr double kSquares =
-    10.0;  // Of crosstalk of 2.6 u, once in a hundred, with those of the fit.
-constexpr double kTurnedU = 2.0;  // Crosstalk of that many u, turned by the skew.
-constexpr double kSeldom = 3.0;   // Linearity of that many u, of both channels.
-constexpr double kPercentPerStandard = 200.0;
 constexpr double kSettlePeriods = 3.0;
 constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by: six time constants.
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
@@ -427,14 +421,15 @@ void Sweep::finish() noexcept {
 void Sweep::share_effects(double check_change) noexcept {
   SweepResults& results = results_;
   const std::size_t count = results.point_count;
-  double device2 = 0.0;
-  double amplitude = 0.0;
-  double reference2 = 0.0;
+  SweepLevels levels;
+  levels.device_scale2 = work_.scales_.device_v * work_.scales_.device_v;
+  levels.reference_scale2 = work_.scales_.reference_v * work_.scales_.reference_v;
   double time = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    device2 = std::max(device2, norm(work_.scatter_[i].device));
-    amplitude = std::max(amplitude, results.table[i].point.amplitude);
-    reference2 += norm(work_.scatter_[i].reference) / static_cast<double>(count);
+    const PointScatter& scatter = work_.scatter_[i];
+    levels.largest_device2 = std::max(levels.largest_device2, norm(scatter.device));
+    levels.largest_amplitude = std::max(levels.largest_amplitude, results.table[i].point.amplitude);
+    levels.mean_reference2 += norm(scatter.reference) / static_cast<double>(count);
   }
   const double check_u =
       point_verdict(work_.check_scatter_, results.settings.check_hz, results.noise, results.inputs)
@@ -443,7 +438,7 @@ void Sweep::share_effects(double check_change) noexcept {
   const double highest_hz = results.table[count - 1].point.frequency_hz;
   results.shared = shared_effects(results.settings, work_.format_.sample_rate_hz,
                                   squares > 0.0 ? sqrt(squares) : 0.0, ratio_factor(), highest_hz,
-                                  sqrt(device2) / work_.scales_.device_v);
+                                  sqrt(levels.largest_device2) / work_.scales_.device_v);
   // The points keep what was seen, by which chi-square is judged; the parameters also what the
   // noise of two checks may have hidden.
   const double drift = norm(results.check_after) > 0.0
@@ -452,9 +447,6 @@ void Sweep::share_effects(double check_change) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     time += time_of(results.table[i].point.frequency_hz, results.shared.corner_hz);
   }
-  const double linearity = results.settings.linearity_expanded_percent / kPercentPerStandard;
-  const double device_scale2 = work_.scales_.device_v * work_.scales_.device_v;
-  const double reference_scale2 = work_.scales_.reference_v * work_.scales_.reference_v;
   double passed = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     ResponsePoint& point = results.table[i].point;
@@ -462,20 +454,8 @@ void Sweep::share_effects(double check_change) noexcept {
     const Complex at = shared_at(results.shared, point.frequency_hz, (passed + 0.5 * own) / time,
                                  point.frequency_hz / highest_hz);
     passed += own;
-    // The fit takes crosstalk for linear, and leaves squares of it in the points.
-    const double leak = results.shared.leak / point.amplitude;
-    const double back = results.shared.leak_back * point.amplitude;
-    // What leaks is sampled at the time of its own channel, or of the other's: by the skew.
-    const double turned = kTwoPi * point.frequency_hz * abs(results.settings.skew_s);
-    const double bent = kSquares * (leak * leak + back * back) + kTurnedU * turned * (leak + back);
-
-    // It takes linearity for that of the device's channel at one level at all points, and all else
-    // of it for common: what the level is off by, squared in either channel, stays, too.
-    const double of_largest = point.amplitude / amplitude;
-    const double off_level =
-        kSeldom * linearity *
-        (abs(norm(work_.scatter_[i].device) - of_largest * of_largest * device2) / device_scale2 +
-         abs(norm(work_.scatter_[i].reference) - reference2) / reference_scale2);
+    const double bent = unfitted_crosstalk(results.shared, results.settings.skew_s, point);
+    const double off_level = unfitted_linearity(results.settings, levels, work_.scatter_[i], point);
     const double u = point.u_amplitude / point.amplitude;
     const double shared2 = at.re * at.re + bent * bent + off_level * off_level;
     results.table[i].budget.shared = sqrt(shared2);

@@ -199,6 +199,28 @@ SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_h
   return shared;
 }
 
+double unfitted_crosstalk(const SharedEffects& shared, double skew_s,
+                          const ResponsePoint& point) noexcept {
+  constexpr double kSquares = 10.0;  // Of 2.6 u, once in a hundred, with those of the fit.
+  constexpr double kTurnedU = 2.0;   // Of that many u.
+  const double leak = shared.leak / point.amplitude;
+  const double back = shared.leak_back * point.amplitude;
+  // What leaks is sampled at the time of its own channel, or of the other's.
+  const double turned = kTwoPi * point.frequency_hz * abs(skew_s);
+  return kSquares * (leak * leak + back * back) + kTurnedU * turned * (leak + back);
+}
+
+double unfitted_linearity(const SweepSettings& settings, const SweepLevels& levels,
+                          const PointScatter& scatter, const ResponsePoint& point) noexcept {
+  constexpr double kSeldom = 3.0;  // Of that many u, of both channels.
+  const double linearity = settings.linearity_expanded_percent / kPercentPerStandard;
+  const double of_largest = point.amplitude / levels.largest_amplitude;
+  return kSeldom * linearity *
+         (abs(norm(scatter.device) - of_largest * of_largest * levels.largest_device2) /
+              levels.device_scale2 +
+          abs(norm(scatter.reference) - levels.mean_reference2) / levels.reference_scale2);
+}
+
 double expected_scatter(const PointScatter& scatter, double frequency_hz,
                         const BudgetInputs& inputs) noexcept {
   const double samples = scatter.repeat_samples;

@@ -118,6 +118,30 @@ CommonBudget common_budget(const SweepSettings& settings, double check_change) n
 SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_hz, double drift,
                              double factor, double highest_hz, double of_scale) noexcept;
 
+/// What the fit leaves of crosstalk in a point, since it takes it for linear and for a change in
+/// phase: its squares, and what the skew between the channels turns.
+///
+/// @returns Relative of the amplitude, and of the phase in rad.
+double unfitted_crosstalk(const SharedEffects& shared, double skew_s,
+                          const ResponsePoint& point) noexcept;
+
+/// The levels of a sweep, in V^2 unless it says otherwise.
+struct SweepLevels {
+  double largest_amplitude = 0.0;  ///< Of the points, in V/(m/s^2).
+  double largest_device2 = 0.0;
+  double mean_reference2 = 0.0;
+  double device_scale2 = 0.0;  ///< Full scales.
+  double reference_scale2 = 0.0;
+};
+
+/// What the fit leaves of linearity in a point, since it takes it for that of the device's channel
+/// at one level at all points, and all else of it for common: what the level is off by, squared, in
+/// either channel.
+///
+/// @returns Relative of the amplitude.
+double unfitted_linearity(const SweepSettings& settings, const SweepLevels& levels,
+                          const PointScatter& scatter, const ResponsePoint& point) noexcept;
+
 /// Relative standard deviation of each component of one repeat's ratio if the channels' noise and
 /// hum are those without drive.
 double expected_scatter(const PointScatter& scatter, double frequency_hz,
