@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "desk/import/labview_header.hpp"
+#include "desk/import/letters.hpp"
 
 namespace emax::desk {
 
@@ -231,19 +232,18 @@ class TableFinder final {
     std::vector<std::string> cells = cells_of(without_comment(line), table_.layout.separator);
     drop_empty_end(cells, 1);
     const std::string& first = cells.front();
-    const auto letters = std::count_if(first.begin(), first.end(), is_letter);
+    const auto letters = std::count_if(first.begin(), first.end(), is_letter_of_any);
     const auto numbers = std::count_if(cells.begin(), cells.end(), [this](const std::string& cell) {
       const CellKind kind = read_cell(cell, table_.layout.has_decimal_comma).kind;
       return kind == CellKind::kNumber || kind == CellKind::kAmbiguous;
     });
-    const bool begins_as_number = !first.empty() && first.front() >= '0' && first.front() <= '9';
+    const bool begins_as_number = !first.empty() && is_digit(first.front());
     return letters >= kLeastLetters && !begins_as_number && numbers <= kMostNumbers &&
            cells.size() != table_.columns.size();
   }
 
-  static bool is_letter(char c) noexcept {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           static_cast<unsigned char>(c) >= 0x80;
+  static bool is_letter_of_any(char c) noexcept {
+    return is_letter(c) || static_cast<unsigned char>(c) >= 0x80;
   }
 
   // Frequencies with one mark that may be of thousands or a decimal sign: the order tells.

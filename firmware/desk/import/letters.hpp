@@ -12,4 +12,6 @@ inline char small_letter(char c) noexcept {
 
 inline bool is_small_letter(char c) noexcept { return c >= 'a' && c <= 'z'; }
 
+inline bool is_letter(char c) noexcept { return is_small_letter(small_letter(c)); }
+
 }  // namespace emax::desk

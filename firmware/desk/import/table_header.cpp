@@ -153,8 +153,7 @@ bool is_one_of(std::string_view word, const std::string_view (&words)[kCount]) {
 }
 
 bool is_part_of_word(char c) noexcept {
-  return is_small_letter(small_letter(c)) || is_digit(c) || static_cast<unsigned char>(c) >= 0x80 ||
-         c == '%';
+  return is_letter(c) || is_digit(c) || static_cast<unsigned char>(c) >= 0x80 || c == '%';
 }
 
 struct Word {

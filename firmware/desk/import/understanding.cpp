@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "desk/import/letters.hpp"
 #include "desk/import/table_layout.hpp"
 #include "desk/import/table_statements.hpp"
 
@@ -36,8 +37,7 @@ bool is_coverage_assumed(const Conversion& u, const FoundTable& table) noexcept 
     return false;
   }
   const std::string& name = u.name;
-  const bool is_letter_next =
-      name.size() > 1 && ((name[1] >= 'a' && name[1] <= 'z') || (name[1] >= 'A' && name[1] <= 'Z'));
+  const bool is_letter_next = name.size() > 1 && is_letter(name[1]);
   // "U95" states what it covers, not how.
   const bool is_symbol =
       !name.empty() && name[0] == 'U' && !is_letter_next && name.compare(1, 2, "95") != 0;
