@@ -35,13 +35,17 @@ emax_leave_out(test_sim_noise
 
 # Hundreds of sweeps, and whole evaluations with all their guards.
 emax_leave_out(test_sweep_faults
+  SweepFaults.AnExchangeAndAnotherFaultAnyTimeWithADeviceOfFewVolts
   SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
+  SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitWithADeviceOfFewVolts
   SweepFaults.AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration)
 emax_leave_out(test_sweep
   Sweep.ALevelOfFewStepsIsNamedWithTheLeastLevel
   Sweep.AQuietBenchHasNoFlags
   Sweep.ExchangedChannelsAreNotSeenInNoise
+  Sweep.LimitsOfFewStepsAreKeptOrRefused
   Sweep.SharpResonancesAreMeasured
+  Sweep.StatedLinearityAndCrosstalkAreNoMisfit
   Sweep.ResonanceThatIsTooSharpIsNamed)
 emax_leave_out(test_evaluation_figures
   EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom
