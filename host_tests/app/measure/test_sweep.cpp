@@ -145,6 +145,43 @@ TEST(Sweep, LimitsOfFewStepsAreKeptOrRefused) {
   }
 }
 
+// Of a shaker that nobody has told about, the first look finds out how lively it is: its drive
+// comes slowly, so that the limit is seen before it is much exceeded.
+TEST(Sweep, TheFirstLookAtALivelyShakerKeepsTheLimit) {
+  for (const double gain : {20.0, 100.0, 400.0}) {
+    for (const double limit_mps2 : {0.5, 2.0, 10.0, 19.0}) {
+      for (const double noise_v : {0.0, 1e-4, 1e-3}) {
+        SCOPED_TRACE(std::to_string(gain) + " m/s^2 per V, " + std::to_string(limit_mps2) +
+                     " m/s^2, noise " + std::to_string(noise_v));
+        BenchSettings bench;
+        bench.noise_v = noise_v;
+        bench.shaker.gain = gain;
+        bench.device.sensitivity = 0.3;
+        SweepSettings settings = default_sweep_settings();
+        settings.frequency_count = 3;
+        settings.frequency_hz = {100.0, 500.0, 1000.0};
+        settings.expected_sensitivity = 0.3;
+        settings.level_mps2 = 0.5 * limit_mps2;
+        settings.acceleration_limit_mps2 = limit_mps2;
+        SweepRun run(bench);
+        run.to_end(settings);
+        const double step_mps2 = gain * 10.0 / 2048.0;  // 12 bits.
+        const bool has_steps = settings.level_mps2 > 5.0 * step_mps2;
+        if (has_steps) {
+          EXPECT_EQ(run.sweep.status, Status::kOk) << emax::explain(run.sweep.status);
+        } else {
+          EXPECT_TRUE(run.sweep.status == Status::kFewSteps ||
+                      run.sweep.status == Status::kWeakSignal)
+              << emax::explain(run.sweep.status);
+          EXPECT_TRUE(run.sweep.status == Status::kFewSteps || run.sweep.least_level_mps2 > 0.0);
+        }
+        // The armature rings to twice the height of a step.
+        EXPECT_LE(run.bench.peak_mps2(), 1.1 * limit_mps2 + (has_steps ? 0.0 : 2.0 * step_mps2));
+      }
+    }
+  }
+}
+
 // One in a hundred is promised: of 60, three or fewer, but for once in 300.
 TEST(Sweep, StatedLinearityAndCrosstalkAreNoMisfit) {
   struct Case {
@@ -260,6 +297,7 @@ TEST(Sweep, LatencyAndBlocksDoNotMatter) {
 TEST(Sweep, ScalesByTheFrontEnd) {
   SweepRun plain{BenchSettings()};
   SweepSettings settings = default_sweep_settings();
+  settings.acceleration_limit_mps2 = 100.0;  // For a look that is not slow, of either.
   settings.frequency_hz = {200.0, 1000.0, 4000.0};
   settings.frequency_count = 3;
   plain.to_end(settings);

@@ -33,38 +33,44 @@ double DriveOscillator::max_amplitude_v(double frequency_hz) const noexcept {
   return by_limit < by_slope ? by_limit : by_slope;
 }
 
-std::uint32_t DriveOscillator::ramp_frames(double change_v) const noexcept {
+std::uint32_t DriveOscillator::ramp_frames(double change_v, double rise_s) const noexcept {
   if (change_v == 0.0) {
     return 0;
   }
   const double by_slope = kSteepest * abs(change_v) / (kRampShare * step_v_);
   const double by_period = frequency_hz_ > 0.0 ? sample_rate_hz_ / frequency_hz_ : 0.0;
-  const double frames = by_slope > by_period ? by_slope : by_period;
+  const double least = std::max(by_period, change_v > 0.0 ? rise_s * sample_rate_hz_ : 0.0);
+  const double frames = by_slope > least ? by_slope : least;
   return frames > kMinRampFrames ? static_cast<std::uint32_t>(frames) + 1u : kMinRampFrames;
 }
 
-std::uint32_t DriveOscillator::go_to(double frequency_hz, double amplitude_v) noexcept {
-  // A ramp that still runs is left where it is now.
-  if (down_.frames > 0 || up_.frames > 0) {
-    const Ramp& ramp = down_.frames > 0 ? down_ : up_;
-    const double a = static_cast<double>(ramp_frame_) / static_cast<double>(ramp.frames);
-    from_v_ += (ramp.to_v - from_v_) * (a * a * (3.0 - 2.0 * a));
+double DriveOscillator::present_v() const noexcept {
+  if (down_.frames == 0 && up_.frames == 0) {
+    return from_v_;
   }
+  const Ramp& ramp = down_.frames > 0 ? down_ : up_;
+  const double a = static_cast<double>(ramp_frame_) / static_cast<double>(ramp.frames);
+  return from_v_ + (ramp.to_v - from_v_) * (a * a * (3.0 - 2.0 * a));
+}
+
+std::uint32_t DriveOscillator::go_to(double frequency_hz, double amplitude_v,
+                                     double rise_s) noexcept {
+  from_v_ = present_v();  // A ramp that still runs is left where it is now.
   down_ = Ramp();
   up_ = Ramp();
   ramp_frame_ = 0;
   target_v_ = amplitude_v;
   next_frequency_hz_ = frequency_hz;
   if (frequency_hz_ == frequency_hz) {
-    up_ = {amplitude_v, ramp_frames(amplitude_v - from_v_)};
+    up_ = {amplitude_v, ramp_frames(amplitude_v - from_v_, rise_s)};
     return up_.frames;
   }
   const double between_v = amplitude_v < from_v_ ? amplitude_v : from_v_;
-  down_ = {between_v, ramp_frames(between_v - from_v_)};
+  down_ = {between_v, ramp_frames(between_v - from_v_, 0.0)};
   if (down_.frames == 0) {
     set_frequency(frequency_hz);
   }
-  up_ = {amplitude_v, ramp_frames(amplitude_v - between_v)};
+  up_ = {amplitude_v, ramp_frames(amplitude_v - between_v, rise_s)};
   return down_.frames + up_.frames;
 }
 

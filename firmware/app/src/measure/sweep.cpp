@@ -19,9 +19,11 @@ constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by:
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
-constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known;
-constexpr double kLittle_mps2 = 1.0;       // a limit below is looked at with few steps.
-constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
+constexpr double kFirstDriveShare = 0.01;     // Of the limit, until the shaker is known;
+constexpr double kLittle_mps2 = 1.0;          // a limit below is looked at with few steps.
+constexpr double kLookShare = 0.25;           // Of the drive, where the first look is too much.
+constexpr double kFeeble_mps2_per_v = 400.0;  // A shaker; one that may be livelier than the limit
+constexpr double kSlowRise_s = 2.0;           // over the first drive is looked at slowly.
 constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
 constexpr double kRoundedSteps = 0.2;    // Of few steps: one.
@@ -185,7 +187,7 @@ void Sweep::watch() noexcept {
   }
   // The device may ring while it settles.
   if ((full_scale && !work_.is_lowering_) || is_too_much) {
-    lower_level();
+    lower_level(full_scale);
   }
 }
 
@@ -201,17 +203,19 @@ double Sweep::reference_peak_v() const noexcept {
   return volts * static_cast<double>(peak);
 }
 
-void Sweep::lower_level() noexcept {
-  work_.target_.was_overrange = true;
-  if (!(work_.drive_per_acceleration_ > 0.0)) {
-    // The first look: nothing is known yet, so it is the drive that was too much, not the level.
+void Sweep::lower_level(bool full_scale) noexcept {
+  const bool is_first_look = !(work_.drive_per_acceleration_ > 0.0);
+  work_.target_.was_overrange = work_.target_.was_overrange || full_scale || !is_first_look;
+  if (is_first_look) {
+    // Nothing is known yet, so it is the drive that was too much, not the level.
     ++work_.target_.tries;
     if (work_.target_.tries > kMostLooks) {
-      fail(Status::kSaturated);
+      // With next to no drive left, a channel at full scale has got there by itself.
+      fail(full_scale ? Status::kDcDrift : Status::kSaturated);
       return;
     }
     work_.is_lowering_ = true;
-    drive_to(kLookShare * work_.drive_.amplitude_v());
+    drive_to(kLookShare * work_.drive_.present_v());
     return;
   }
   work_.level_scale_ *= 0.5;
@@ -349,13 +353,21 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   drive_to(amplitude_v);
 }
 
+// While the shaker is not known, the limit is to be seen before the rise has gone far beyond it.
+double Sweep::rise_s() const noexcept {
+  const bool is_slow = !(work_.drive_per_acceleration_ > 0.0) &&
+                       results_.settings.acceleration_limit_mps2 <
+                           kFeeble_mps2_per_v * kFirstDriveShare * results_.settings.drive_limit_v;
+  return is_slow ? kSlowRise_s : 0.0;
+}
+
 void Sweep::drive_to(double amplitude_v) noexcept {
   const double periods_s = work_.target_.periods / work_.target_.frequency_hz;
   const double settle_s =
       std::max(work_.target_.settle_scale * std::max(results_.settings.settle_s, periods_s),
                work_.target_.ringing_s);
   work_.settle_left_ = frames_of(settle_s * work_.format_.sample_rate_hz);
-  work_.left_ = work_.drive_.go_to(work_.target_.frequency_hz, amplitude_v) +
+  work_.left_ = work_.drive_.go_to(work_.target_.frequency_hz, amplitude_v, rise_s()) +
                 work_.format_.latency_frames + work_.settle_left_ + 1u;
   work_.activity_ = SweepWorkspace::Activity::kSettling;
   work_.block_is_spent_ = true;

@@ -1,4 +1,7 @@
 // What a sweep makes of its repeats: the level, the faults, the points.
+#include <algorithm>
+#include <limits>
+
 #include "emax/app/measure/sweep.hpp"
 #include "emax/app/measure/sweep_workspace.hpp"
 #include "emax/base/elementary.hpp"
@@ -10,6 +13,7 @@ namespace {
 constexpr double kWeakSigmas = 8.0;
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
+constexpr double kSeenTwice = 2.0;        // Times where a device is seen, to be sure of it.
 constexpr double kBlindShare = 0.1;       // Of the drive limit, while nothing was seen at all.
 constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
 constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
@@ -165,6 +169,10 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   }
   const double acceleration = acceleration_of(reference.fit.amplitude_v);
   const double drive_v = work_.drive_.amplitude_v();
+  if (seen_v(reference, device) < drive_v) {
+    suspect(Status::kNoDevice);
+    return;
+  }
   const double per_acceleration = drive_v / acceleration;
   const double few_steps_mps2 = few_steps_v() / per_acceleration;
   const double share = results_.stage == SweepStage::kCheckBefore ? kCautiousSteps : 1.0;
@@ -175,12 +183,17 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
     return;
   }
   work_.target_.is_close = true;
-  if (!(work_.drive_per_acceleration_ > 0.0)) {
+  const bool is_first_look = !(work_.drive_per_acceleration_ > 0.0);
+  if (is_first_look) {
     work_.level_room_mps2_ = room_mps2(reference.fit.amplitude_v, device.fit.amplitude_v);
   }
   const Status status = status_at_first(reference, device);
   if (status != Status::kOk) {
     suspect(status);
+    return;
+  }
+  if (is_first_look && has_left_silence(reference, device)) {
+    suspect(Status::kDcDrift);  // Before more drive hides it behind full scale.
     return;
   }
   const double aim = aim_mps2();
@@ -196,13 +209,13 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   }
   work_.target_.acceleration_mps2 = acceleration;
   work_.drive_per_acceleration_ = per_acceleration;
-  if (drive_v >= few_steps_v()) {
-    work_.least_level_mps2_ = few_steps_v() / per_acceleration;
+  if (drive_v >= few_steps_v() || !(work_.least_level_mps2_ > 0.0)) {
+    work_.least_level_mps2_ = few_steps_mps2;  // By a drive of fewer steps, roughly.
   }
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
     return;
   }
-  const double needed_v = aim * per_acceleration;
+  const double needed_v = std::min(aim * per_acceleration, kSeenTwice * seen_v(reference, device));
   ++work_.target_.tries;
   if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
     fail_at_level();
@@ -232,6 +245,19 @@ bool Sweep::look_for_exchange(const Reading& reference, const Reading& device) n
                                ? 1.0
                                : reference.fit.amplitude_v / device_most_v;
   return has_sheet && !is_excluded && device.least_v() > most_v * reference_most_v;
+}
+
+// A device without a signal at the check: what the reference's input reads may be the device, too.
+// The drive rises to where the data sheet lets it be seen, first, and no further without it.
+//
+// @returns That drive; infinity where the device is seen, or nothing is known of it.
+double Sweep::seen_v(const Reading& reference, const Reading& device) const noexcept {
+  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
+  if (results_.stage != SweepStage::kCheckBefore || !device.is_weak() || !(sheet_v_per_v > 0.0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return kPlausibleFactor * device.most_v() / (sheet_v_per_v * reference.least_v()) *
+         work_.drive_.amplitude_v();
 }
 
 // Before the level follows a reference that may be another sensor by now, upwards or downwards.
@@ -284,11 +310,13 @@ bool Sweep::has_few_steps() const noexcept {
   return work_.least_level_mps2_ > 0.0 && work_.drive_.amplitude_v() < few_steps_v();
 }
 
-// A level near the limit cannot be raised.
+// A level near the limit cannot be raised, nor one to what is near the limit.
 Status Sweep::few_steps() const noexcept {
-  return 2.0 * results_.settings.level_mps2 > results_.settings.acceleration_limit_mps2
-             ? Status::kFewSteps
-             : Status::kWeakSignal;
+  const double level = results_.settings.level_mps2;
+  const double least = work_.least_level_mps2_;
+  const double needed = has_few_steps() && least > level ? least : level;
+  return 2.0 * needed > results_.settings.acceleration_limit_mps2 ? Status::kFewSteps
+                                                                  : Status::kWeakSignal;
 }
 
 // A level that full scale has made little is not reached for the converters' steps, and a channel
@@ -392,6 +420,14 @@ double Sweep::offset_change_v(double reference_v, double device_v) const noexcep
   return abs(device_v - ratio * reference_v) / (ratio > 1.0 ? ratio : 1.0);
 }
 
+// Offsets that are no longer those of the silence.
+bool Sweep::has_left_silence(const Reading& reference, const Reading& device) const noexcept {
+  const double moved_v =
+      offset_change_v(reference.fit.offset_v - results_.inputs.silent_reference.offset_v,
+                      device.fit.offset_v - results_.inputs.silent_device.offset_v);
+  return moved_v > kOffsetShare * work_.scales_.device_v + reference.doubt_v + device.doubt_v;
+}
+
 Status Sweep::disturbance_of(const Reading& reference, const Reading& device) const noexcept {
   if (reference.is_weak()) {
     return device.is_weak() ? Status::kWeakSignal : Status::kNoReference;
@@ -402,13 +438,10 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   const double full_scale_v = work_.scales_.device_v;
   const double within_v = offset_change_v(reference.fit.offset_v - work_.first_reference_offset_v_,
                                           device.fit.offset_v - work_.first_device_offset_v_);
-  const double since_silence_v =
-      offset_change_v(reference.fit.offset_v - results_.inputs.silent_reference.offset_v,
-                      device.fit.offset_v - results_.inputs.silent_device.offset_v);
   // After overrange the ratio is in doubt; it is judged before anything else.
   const double doubt_v = reference.doubt_v + device.doubt_v;
-  if (!work_.target_.was_overrange && (within_v > kWanderShare * full_scale_v + doubt_v ||
-                                       since_silence_v > kOffsetShare * full_scale_v + doubt_v)) {
+  if (!work_.target_.was_overrange &&
+      (within_v > kWanderShare * full_scale_v + doubt_v || has_left_silence(reference, device))) {
     // The mean of words that have just got stuck is another one, too.
     return work_.device_monitor_.equal_words() > kStuckWords ? Status::kStuckChannel
                                                              : Status::kDcDrift;

@@ -28,13 +28,18 @@ class DriveOscillator {
   /// Moves to this frequency and amplitude, from the next frame on.
   ///
   /// @param[in] amplitude_v 0 to `max_amplitude_v(frequency_hz)`.
+  /// @param[in] rise_s      That the amplitude takes at least to rise.
   /// @returns The number of frames until it is there.
-  std::uint32_t go_to(double frequency_hz, double amplitude_v) noexcept;
+  std::uint32_t go_to(double frequency_hz, double amplitude_v, double rise_s = 0.0) noexcept;
 
   /// Fills the next block. Two multiplications per frame, six on a ramp.
   void fill(Span<hal::Word> block) noexcept;
 
+  /// @returns The amplitude that it moves to, in V.
   double amplitude_v() const noexcept { return target_v_; }
+
+  /// @returns The amplitude of the last frame, in V.
+  double present_v() const noexcept;
 
  private:
   struct Ramp {
@@ -42,7 +47,7 @@ class DriveOscillator {
     std::uint32_t frames = 0;
   };
 
-  std::uint32_t ramp_frames(double change_v) const noexcept;
+  std::uint32_t ramp_frames(double change_v, double rise_s) const noexcept;
   void emit(Span<hal::Word> block) noexcept;
   void set_frequency(double frequency_hz) noexcept;
   void end_ramp() noexcept;

@@ -30,8 +30,9 @@ class SweepWorkspace;
 /// rests, and takes repeats of whole periods, each with a fit on both channels. The first repeat
 /// also tells the level: where it is off, the drive is corrected by the ratio and the frequency
 /// begins anew. Overrange halves the drive and with it the level, for this frequency and, doubling
-/// again, for those after it. The first look is at little drive, and at less where that is too
-/// much; a level that would take a channel beyond its full scale is lowered from then on.
+/// again, for those after it. The first look is at little drive, which under a small limit of
+/// acceleration rises over two seconds, and at less where that is too much; a level that would take
+/// a channel beyond its full scale is lowered from then on.
 ///
 /// The limit of acceleration does not hang on the reference alone. A step to more than 1.5 times
 /// the drive that the frequency before predicts is refused until a second look at half of the drive
@@ -89,13 +90,14 @@ class Sweep {
   void take_frames() noexcept;
   void watch() noexcept;
   double reference_peak_v() const noexcept;
-  void lower_level() noexcept;
+  void lower_level(bool full_scale) noexcept;
   void consume(std::size_t from, std::size_t count) noexcept;
   void end_activity() noexcept;
   void end_silence() noexcept;
   void foresee_resonance() noexcept;
   void foresee_ringing() noexcept;
   void begin_target(double frequency_hz) noexcept;
+  double rise_s() const noexcept;
   void drive_to(double amplitude_v) noexcept;
   void begin_repeat() noexcept;
   void end_repeat() noexcept;
@@ -108,8 +110,10 @@ class Sweep {
   double room_mps2(double reference_v, double device_v) const noexcept;
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   bool look_for_exchange(const Reading& reference, const Reading& device) noexcept;
+  double seen_v(const Reading& reference, const Reading& device) const noexcept;
   void raise_drive(const Reading& reference, const Reading& device) noexcept;
   double offset_change_v(double reference_v, double device_v) const noexcept;
+  bool has_left_silence(const Reading& reference, const Reading& device) const noexcept;
   Status disturbance_of(const Reading& reference, const Reading& device) const noexcept;
   void suspect(Status status) noexcept;
   Status distortion() const noexcept;
