@@ -180,7 +180,7 @@ class Times {
 
  private:
   std::uint64_t state_ = from_environment("EMAX_FAULT_START", 2024);
-  std::uint64_t last_ = from_environment("EMAX_FAULT_LAST", 570000);
+  std::uint64_t last_ = from_environment("EMAX_FAULT_LAST", 770000);
 };
 
 /// Calls `run(i, seed, fault)` for the i-th random time of each fault.

@@ -182,8 +182,7 @@ void Sweep::watch() noexcept {
   const bool is_too_much = acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2;
   if (is_too_much && !full_scale && !(work_.drive_per_acceleration_ > 0.0) &&
       !(work_.drive_.amplitude_v() > few_steps_v())) {
-    fail(Status::kFewSteps);
-    return;
+    work_.target_.exceeds_by_few_steps = true;  // Unless it does so without them, too.
   }
   // The device may ring while it settles.
   if ((full_scale && !work_.is_lowering_) || is_too_much) {
@@ -210,8 +209,8 @@ void Sweep::lower_level(bool full_scale) noexcept {
     // Nothing is known yet, so it is the drive that was too much, not the level.
     ++work_.target_.tries;
     if (work_.target_.tries > kMostLooks) {
-      // With next to no drive left, a channel at full scale has got there by itself.
-      fail(full_scale ? Status::kDcDrift : Status::kSaturated);
+      // With next to no drive left, a channel has got there by itself.
+      fail(Status::kDcDrift);
       return;
     }
     work_.is_lowering_ = true;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kWeakSigmas = 8.0;
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
-constexpr double kSeenTwice = 2.0;        // Times where a device is seen, to be sure of it.
+constexpr double kSurelySeen = 1.5;       // Times where a device is seen.
 constexpr double kBlindShare = 0.1;       // Of the drive limit, while nothing was seen at all.
 constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
 constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
@@ -159,6 +159,10 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
     suspect(Status::kSwappedChannels);
     return;
   }
+  if (work_.target_.exceeds_by_few_steps) {
+    fail(status_of_steps());
+    return;
+  }
   if (reference.is_weak()) {
     if (device.is_strong()) {
       suspect(Status::kNoReference);
@@ -176,10 +180,10 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   const double per_acceleration = drive_v / acceleration;
   const double few_steps_mps2 = few_steps_v() / per_acceleration;
   const double share = results_.stage == SweepStage::kCheckBefore ? kCautiousSteps : 1.0;
-  if (few_steps() == Status::kFewSteps && drive_v >= few_steps_v() &&
+  if (few_steps() != Status::kWeakSignal && drive_v >= few_steps_v() &&
       most_mps2() < share * few_steps_mps2) {
     work_.least_level_mps2_ = few_steps_mps2;
-    fail(Status::kFewSteps);
+    fail(few_steps());
     return;
   }
   work_.target_.is_close = true;
@@ -215,7 +219,7 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
     return;
   }
-  const double needed_v = std::min(aim * per_acceleration, kSeenTwice * seen_v(reference, device));
+  const double needed_v = std::min(aim * per_acceleration, kSurelySeen * seen_v(reference, device));
   ++work_.target_.tries;
   if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
     fail_at_level();
@@ -310,12 +314,24 @@ bool Sweep::has_few_steps() const noexcept {
   return work_.least_level_mps2_ > 0.0 && work_.drive_.amplitude_v() < few_steps_v();
 }
 
+// Few steps make more than the limit, or the reference's input reads another sensor.
+Status Sweep::status_of_steps() const noexcept {
+  const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
+  const Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
+  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
+  const bool is_off_sheet =
+      sheet_v_per_v * reference.least_v() > kPlausibleFactor * device.most_v() ||
+      (sheet_v_per_v > 0.0 &&
+       device.least_v() > kPlausibleFactor * sheet_v_per_v * reference.most_v());
+  return is_off_sheet ? Status::kSwappedChannels : Status::kFewSteps;
+}
+
 // A level near the limit cannot be raised, nor one to what is near the limit.
 Status Sweep::few_steps() const noexcept {
   const double level = results_.settings.level_mps2;
   const double least = work_.least_level_mps2_;
   const double needed = has_few_steps() && least > level ? least : level;
-  return 2.0 * needed > results_.settings.acceleration_limit_mps2 ? Status::kFewSteps
+  return 2.0 * needed > results_.settings.acceleration_limit_mps2 ? status_of_steps()
                                                                   : Status::kWeakSignal;
 }
 

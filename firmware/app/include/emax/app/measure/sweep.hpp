@@ -120,6 +120,7 @@ class Sweep {
   double few_steps_v() const noexcept;
   double first_drive_v() const noexcept;
   bool has_few_steps() const noexcept;
+  Status status_of_steps() const noexcept;
   Status few_steps() const noexcept;
   void end_target() noexcept;
   bool is_neighbour() const noexcept;

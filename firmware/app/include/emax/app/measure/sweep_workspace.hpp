@@ -47,7 +47,8 @@ class SweepWorkspace {
     double by_device = 0.0;
     std::uint32_t looks = 0;  // Again, at what was suspect.
     bool was_overrange = false;
-    bool is_close = false;  // The level of this frequency has been seen.
+    bool exceeds_by_few_steps = false;  // Of the drive, the limit of acceleration.
+    bool is_close = false;              // The level of this frequency has been seen.
   };
 
   void begin(const hal::StreamFormat& format, const FullScales& scales) noexcept;
