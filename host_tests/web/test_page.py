@@ -522,6 +522,18 @@ class Bench(PageTest):
         self.assertAlmostEqual(self.results()["energy"]["E"] / energy, 1.0, delta=1e-12)
         self.assert_quiet()
 
+    def test_gives_the_figures_of_a_sweep_in_doubt_with_the_doubt(self):
+        self.open()
+        for line in ["CALC:MCAR:TRI 1000", "SENS:SWE:FREQ 200,1000,2000,4000,5000", "CALC:TREN:TIME 0.001", "DEV:SENS 1.5"]:
+            self.speak(line)
+        self.click("sweep")
+        self.idle()
+        self.assertRegex(self.text("problem"), r"^Sweep of .*: -230.*DEV:SENS")
+        # S of the bench is 1.037.
+        self.assertAlmostEqual(self.results()["model"]["S"], 1.037, delta=0.02)
+        self.assertIn("Maximum energy", self.text("certificate"))
+        self.assert_quiet()
+
     def test_stops_at_once_and_loses_nothing(self):
         self.open()
         self.fill("sim-pace", "1")

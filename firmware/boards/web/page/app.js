@@ -6,6 +6,7 @@ const STAGES = {sweep: 'sweeping', idle: 'done'};
 const MOST_BYTES = 1 << 20;
 const MOST_LOG = 20000;
 const LONG_MS = 10000;
+const DOUBT = '-230';
 
 const MARKS = {fit: 'its chi-square is too large for its uncertainties', damping: 'its points leave the damping open'};
 const MOUNTED = [['sim-s', 'S'], ['sim-f0', 'f0'], ['sim-beta', 'β']];
@@ -466,14 +467,14 @@ class App {
     if (broken) {
       throw broken;
     }
-    const isComplete = problems.length === 0 && !this.job.isStopped;
-    if (!isComplete) {
-      const words = this.job.isStopped ? 'stopped; the drive is at zero' : problems.join('; ');
-      this.complain(`${words}. ${points.length} points were measured and are kept.`);
-    }
+    // A doubt about what was measured is a remark at its end; what ends a sweep is another error.
+    const isComplete = problems.every((problem) => problem.startsWith(DOUBT)) && !this.job.isStopped;
     if (isComplete) {
-      await this.evaluate(device);
+      await this.evaluate(device, problems);
+      return;
     }
+    const words = this.job.isStopped ? 'stopped; the drive is at zero' : problems.join('; ');
+    this.complain(`${words}. ${points.length} points were measured and are kept.`);
   }
 
   async again() {
@@ -481,8 +482,8 @@ class App {
     await this.evaluate(this.device);
   }
 
-  async evaluate(device) {
-    const problems = await this.compute();
+  async evaluate(device, remarks = []) {
+    const problems = [...remarks, ...await this.compute()];
     if (this.job.isStopped) {
       this.progress(0, '');
       this.showDevice(device);
