@@ -324,7 +324,7 @@ class FigureValues(ProgramTest):
     def test_whose_chi_square_it_is(self):
         table = (DATA / "devices/piezo_a.csv").read_text()
         (self.directory / "t.csv").write_text(table + "# shared: leak=0.01\n")
-        words = "with crosstalk and linearity fitted, too, so not of the estimates above\n"
+        words = "with crosstalk, linearity and skew fitted, too, so not of the estimates above\n"
         self.assertIn(words, self.succeed("report", "--points", "t.csv", "--trend", "none", "--trials", "1000"))
         self.assertNotIn(words, self.succeed("report", "--points", DATA / "devices/piezo_a.csv", "--trend", "none", "--trials", "1000"))
 

@@ -48,7 +48,7 @@ emax_leave_out(test_sweep
   Sweep.ExchangedChannelsAreNotSeenInNoise
   Sweep.LimitsOfFewStepsAreKeptOrRefused
   Sweep.SharpResonancesAreMeasured
-  Sweep.StatedLinearityAndCrosstalkAreNoMisfit
+  Sweep.WhatIsStatedIsNoMisfit
   Sweep.ResonanceThatIsTooSharpIsNamed)
 emax_leave_out(test_evaluation_figures
   EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom

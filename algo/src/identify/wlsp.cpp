@@ -57,10 +57,14 @@ void rotate_in(double (&r)[kSize][kSize], double (&rhs)[kSize], double (&row)[kS
   rotate_into(&r[0][0], rhs, row, kSize, value);
 }
 
-void solve_upper(const double (&r)[3][3], double (&x)[3]) noexcept {
-  x[2] = x[2] / r[2][2];
-  x[1] = (x[1] - r[1][2] * x[2]) / r[1][1];
-  x[0] = (x[0] - r[0][1] * x[1] - r[0][2] * x[2]) / r[0][0];
+template <std::size_t kSize>
+void solve_upper(const double (&r)[kSize][kSize], double (&x)[kSize]) noexcept {
+  for (std::size_t i = kSize; i-- > 0;) {
+    for (std::size_t j = i + 1; j < kSize; ++j) {
+      x[i] -= r[i][j] * x[j];
+    }
+    x[i] = x[i] / r[i][i];
+  }
 }
 
 void solve_transposed(const double (&r)[3][3], double (&x)[3]) noexcept {
@@ -558,7 +562,8 @@ void Wlsp::add_effect(Effect effect, double (&covariance)[3][3]) const noexcept 
 }
 
 // The points' own uncertainties know of drift, images and skew, not of leak and linearity. What no
-// change of the parameters takes up of those stays in the residuals. Each is one number of a
+// change of the parameters takes up of those stays in the residuals, and that of a skew is at all
+// points of one size, as no scatter is. Each is one number of a
 // standard normal distribution, the same at all points: chi-square is judged at those numbers that
 // make it least, which is chi-square with the whole covariance. The parameters move along: it is
 // that of the fit with that covariance, and not that of the estimates, which do not move.
@@ -566,7 +571,7 @@ void Wlsp::explain_by_shared() noexcept {
   is_explained_ = false;
   explained_ = {};
   const SharedEffects& shared = response_.shared();
-  if (!shared.is_beside()) {
+  if (!shared.is_explained()) {
     return;
   }
   Explained parts[kExplained] = {};
@@ -634,7 +639,7 @@ Complex Wlsp::shared_beside(std::size_t index) const noexcept {
   for (std::size_t k = 0;; ++k) {
     const Complex relative = change / y;
     squares = squares + Complex{square(relative.re), square(relative.im)};
-    if (k == kExplained) {
+    if (k == kBeside) {
       return {sqrt(squares.re), sqrt(squares.im)};
     }
     change = change_of(explained_by(k), index);

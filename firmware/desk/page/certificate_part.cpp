@@ -142,10 +142,11 @@ std::string uncertainty_statement(const app::EvaluationResults& results,
 }
 
 std::string chi_square_statement(const app::EvaluationResults& results) {
-  if (!results.fit.response().shared().is_beside()) {
+  if (!results.fit.response().shared().is_explained()) {
     return "";
   }
-  return "Of the parameters and the sizes of stated crosstalk and linearity that make it least "
+  return "Of the parameters and the sizes of stated crosstalk, linearity and skew that make it "
+         "least "
          "together, not of the estimates printed, which are fitted without those effects.";
 }
 

@@ -54,8 +54,12 @@ struct SharedEffects {
   double leak_back = 0.0;  ///< Device seen in the reference's: of 1/K, in (m/s^2)/V.
   double linearity = 0.0;  ///< Of the largest amplitude A, relative, as A^2.
 
-  /// @returns Whether chi-square has sizes of leak and linearity among its unknowns: see `Wlsp`.
-  constexpr bool is_beside() const noexcept { return leak + leak_back + linearity > 0.0; }
+  /// @returns Whether chi-square has sizes of leak, linearity and skew among its unknowns: see
+  /// `Wlsp`. A skew below a nanosecond turns the phase by less than a sweep sees.
+  constexpr bool is_explained() const noexcept {
+    constexpr double kLittle_s = 1e-9;
+    return leak + leak_back + linearity > 0.0 || skew_s > kLittle_s;
+  }
 };
 
 /// @returns The time that a point takes, where those above the corner take 1.

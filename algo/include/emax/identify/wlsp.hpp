@@ -31,8 +31,8 @@ struct WlspFit {
   double mu[3] = {};    ///< 1/S, beta/(S w0), 1/(S w0^2), in units of m/s^2, V and s.
   double u_mu[3] = {};  ///< Their standard uncertainties.
   /// Chi-square with the whole covariance that the points state: the least for any parameters and
-  /// any sizes of leak and linearity. Without those it is that of `mu`; with them `mu`, which is
-  /// fitted without their covariance, has more.
+  /// any sizes of leak, linearity and skew. Without those it is that of `mu`; with them `mu`, which
+  /// is fitted without their covariance, has more.
   double chi2 = 0.0;
   double common_effect = 0.0;  ///< The common effect found, in units of its standard uncertainty.
   double birge_ratio = 0.0;    ///< sqrt(chi2/dof): 1 where the model and the uncertainties hold.
@@ -115,9 +115,9 @@ class Wlsp {
   /// @param[in] index Of a point, below `response().size()`.
   /// @returns 1/K measured minus 1/K fitted at that point, whitened: L^-1 times the residual, so
   /// that both parts are near 1 in size where the stated uncertainties hold. The common effect
-  /// found is taken out first, and so is what leak and linearity explain: those of the sizes that
-  /// make chi2 least. The sum of their squares over all points, plus the squares of `common_effect`
-  /// and of those sizes, is chi2.
+  /// found is taken out first, and so is what leak, linearity and skew explain: those of the sizes
+  /// that make chi2 least. The sum of their squares over all points, plus the squares of
+  /// `common_effect` and of those sizes, is chi2.
   Complex normalised_residual(std::size_t index) const noexcept;
 
   /// What of the shared effects the points' own uncertainties leave out: clock, leak and linearity.
@@ -177,16 +177,19 @@ class Wlsp {
   Complex whiten(std::size_t index, const Complex& value) const noexcept;
   Columns whitened_columns(std::size_t index) const noexcept;
   Complex whitened_residual(std::size_t index, const double (&scaled)[3]) const noexcept;
-  /// Leak, leak back and linearity in units of their uncertainties, and what parameters and common
-  /// effect take up of them.
-  static constexpr std::size_t kExplained = 3;
+  /// Of the shared effects, those that the points' own uncertainties leave out, first.
+  static constexpr std::size_t kBeside = 3;
+  /// Leak, leak back, linearity and skew in units of their uncertainties, and what parameters and
+  /// common effect take up of them.
+  static constexpr std::size_t kExplained = 4;
   struct Explained {
     double size[kExplained];
     double x[3];
     double common;
   };
   static constexpr Effect explained_by(std::size_t k) noexcept {
-    return static_cast<Effect>(static_cast<std::size_t>(Effect::kLeak) + k);
+    return k < kBeside ? static_cast<Effect>(static_cast<std::size_t>(Effect::kLeak) + k)
+                       : Effect::kSkew;
   }
   void explain_by_shared() noexcept;
   Complex left_over(const Explained& explained, std::size_t index) const noexcept;
@@ -210,7 +213,7 @@ class Wlsp {
   double hold_[3] = {};            // The equation that holds it: hold_ times scaled mu is 0.
   bool is_damping_given_ = false;  // The one that is held.
   bool has_common_ = false;
-  bool is_explained_ = false;  // By some leak or linearity.
+  bool is_explained_ = false;  // By some leak, linearity or skew.
   WlspFit fit_;
 };
 

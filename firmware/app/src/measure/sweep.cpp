@@ -468,7 +468,8 @@ void Sweep::share_effects(double check_change) noexcept {
     const double bent = unfitted_crosstalk(results.shared, results.settings.skew_s, point);
     const double off_level = unfitted_linearity(results.settings, levels, work_.scatter_[i], point);
     const double u = point.u_amplitude / point.amplitude;
-    const double shared2 = at.re * at.re + bent * bent + off_level * off_level;
+    const double turned = unfitted_turn(at.im);
+    const double shared2 = at.re * at.re + bent * bent + off_level * off_level + turned * turned;
     results.table[i].budget.shared = sqrt(shared2);
     point.u_amplitude = sqrt(u * u + shared2) * point.amplitude;
     point.u_phase_rad = sqrt(u * u + (at.im * at.im + bent * bent));

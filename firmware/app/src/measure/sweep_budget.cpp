@@ -210,6 +210,11 @@ double unfitted_crosstalk(const SharedEffects& shared, double skew_s,
   return kSquares * (leak * leak + back * back) + kTurnedU * turned * (leak + back);
 }
 
+double unfitted_turn(double u_rad) noexcept {
+  constexpr double kSeldom2 = 6.6;  // Of 2.6 u, once in a hundred.
+  return 0.5 * kSeldom2 * u_rad * u_rad;
+}
+
 double unfitted_linearity(const SweepSettings& settings, const SweepLevels& levels,
                           const PointScatter& scatter, const ResponsePoint& point) noexcept {
   constexpr double kSeldom = 3.0;  // Of that many u, of both channels.

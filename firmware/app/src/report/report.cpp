@@ -363,9 +363,9 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
   write_common_part(results.fit, out);
   out.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);
   out.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
-  if (results.fit.response().shared().is_beside()) {
+  if (results.fit.response().shared().is_explained()) {
     out.indent()
-        .text("with crosstalk and linearity fitted, too, so not of the estimates above")
+        .text("with crosstalk, linearity and skew fitted, too, so not of the estimates above")
         .line();
   }
   out.label("Birge ratio").general(fit.birge_ratio, 4);

@@ -118,6 +118,12 @@ CommonBudget common_budget(const SweepSettings& settings, double check_change) n
 SharedEffects shared_effects(const SweepSettings& settings, double sample_rate_hz, double drift,
                              double factor, double highest_hz, double of_scale) noexcept;
 
+/// What the fit leaves of a shared error of the phase, since it takes a turn for a straight step:
+/// 1 - cos, of an error that one in a hundred exceeds.
+///
+/// @returns Relative of the amplitude.
+double unfitted_turn(double u_rad) noexcept;
+
 /// What the fit leaves of crosstalk in a point, since it takes it for linear and for a change in
 /// phase: its squares, and what the skew between the channels turns.
 ///
