@@ -37,6 +37,7 @@ emax_leave_out(test_sim_noise
   SimNoise.IsWhite)
 
 # Hundreds of sweeps, and whole evaluations with all their guards.
+emax_leave_out(test_sweep_limit)
 emax_leave_out(test_sweep_faults
   SweepFaults.AnExchangeAndAnotherFaultAnyTimeWithADeviceOfFewVolts
   SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
@@ -46,7 +47,6 @@ emax_leave_out(test_sweep
   Sweep.ALevelOfFewStepsIsNamedWithTheLeastLevel
   Sweep.AQuietBenchHasNoFlags
   Sweep.ExchangedChannelsAreNotSeenInNoise
-  Sweep.LimitsOfFewStepsAreKeptOrRefused
   Sweep.SharpResonancesAreMeasured
   Sweep.WhatIsStatedIsNoMisfit
   Sweep.ResonanceThatIsTooSharpIsNamed)

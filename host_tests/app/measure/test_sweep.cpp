@@ -108,80 +108,6 @@ TEST(Sweep, ALevelOfFewStepsIsNamedWithTheLeastLevel) {
   }
 }
 
-// Steps of the drive that are large beside the limit: an accepted limit is kept, another is refused
-// before the drive has more than five of them.
-TEST(Sweep, LimitsOfFewStepsAreKeptOrRefused) {
-  struct Case {
-    double full_scale_v;
-    double limit_mps2;
-    bool is_accepted;
-  };
-  // 2 m/s^2 per V: 0.05 m/s^2 by five steps of 10 V, and three times that is needed.
-  const Case cases[] = {{10.0, 0.2, true},   {10.0, 0.1, false}, {10.0, 0.06, false},
-                        {10.0, 0.01, false}, {1.0, 0.2, true},   {1.0, 0.1, true},
-                        {1.0, 0.06, true},   {1.0, 0.02, true},  {1.0, 0.01, false}};
-  for (const Case& c : cases) {
-    for (const double noise_v : {0.0, 1e-4, 5e-3}) {
-      SCOPED_TRACE(std::to_string(c.full_scale_v) + " V, " + std::to_string(c.limit_mps2) +
-                   " m/s^2, noise " + std::to_string(noise_v));
-      BenchSettings bench;
-      bench.noise_v = noise_v;
-      bench.front_end.drive_v = c.full_scale_v;
-      SweepSettings settings = default_sweep_settings();
-      settings.frequency_count = 4;
-      settings.frequency_hz = {30.0, 300.0, 3000.0, 6000.0};
-      settings.level_mps2 = c.limit_mps2;
-      settings.acceleration_limit_mps2 = c.limit_mps2;
-      settings.drive_full_scale_v = c.full_scale_v;
-      settings.drive_limit_v = std::min(5.0, c.full_scale_v);
-      SweepRun run(bench);
-      run.to_end(settings);
-      EXPECT_EQ(run.sweep.status, c.is_accepted ? Status::kOk : Status::kFewSteps)
-          << emax::explain(run.sweep.status);
-      const double steps_v = 0.0025 * c.full_scale_v;
-      // Half a step of rounding, and the armature rings with each step: less than 7 for 5.
-      EXPECT_LE(run.bench.peak_mps2(), c.is_accepted ? 1.1 * c.limit_mps2 : 1.4 * 2.0 * steps_v);
-    }
-  }
-}
-
-// Of a shaker that nobody has told about, the first look finds out how lively it is: its drive
-// comes slowly, so that the limit is seen before it is much exceeded.
-TEST(Sweep, TheFirstLookAtALivelyShakerKeepsTheLimit) {
-  for (const double gain : {20.0, 100.0, 400.0}) {
-    for (const double limit_mps2 : {0.5, 2.0, 10.0, 19.0}) {
-      for (const double noise_v : {0.0, 1e-4, 1e-3}) {
-        SCOPED_TRACE(std::to_string(gain) + " m/s^2 per V, " + std::to_string(limit_mps2) +
-                     " m/s^2, noise " + std::to_string(noise_v));
-        BenchSettings bench;
-        bench.noise_v = noise_v;
-        bench.shaker.gain = gain;
-        bench.device.sensitivity = 0.3;
-        SweepSettings settings = default_sweep_settings();
-        settings.frequency_count = 3;
-        settings.frequency_hz = {100.0, 500.0, 1000.0};
-        settings.expected_sensitivity = 0.3;
-        settings.level_mps2 = 0.5 * limit_mps2;
-        settings.acceleration_limit_mps2 = limit_mps2;
-        SweepRun run(bench);
-        run.to_end(settings);
-        const double step_mps2 = gain * 10.0 / 2048.0;  // 12 bits.
-        const bool has_steps = settings.level_mps2 > 5.0 * step_mps2;
-        if (has_steps) {
-          EXPECT_EQ(run.sweep.status, Status::kOk) << emax::explain(run.sweep.status);
-        } else {
-          EXPECT_TRUE(run.sweep.status == Status::kFewSteps ||
-                      run.sweep.status == Status::kWeakSignal)
-              << emax::explain(run.sweep.status);
-          EXPECT_TRUE(run.sweep.status == Status::kFewSteps || run.sweep.least_level_mps2 > 0.0);
-        }
-        // The armature rings to twice the height of a step.
-        EXPECT_LE(run.bench.peak_mps2(), 1.1 * limit_mps2 + (has_steps ? 0.0 : 2.0 * step_mps2));
-      }
-    }
-  }
-}
-
 // One in a hundred is promised: of 60, three or fewer, but for once in 300.
 TEST(Sweep, WhatIsStatedIsNoMisfit) {
   struct Case {
@@ -655,7 +581,7 @@ class EchoStream final : public emax::hal::AnalogStream {
   double spike_v_ = 0.0;
 };
 
-/// The drive of the first point, in the midst of which the reference sees so much.
+/// The drive of the first point, in the midst of which, at its level, the reference sees so much.
 double drive_with_spike(double volts) {
   SweepSettings settings = default_sweep_settings();
   settings.frequency_count = 3;
@@ -665,9 +591,12 @@ double drive_with_spike(double volts) {
   static SweepWorkspace work;
   Sweep sweep(results, work, stream);
   EXPECT_EQ(sweep.start(settings), Status::kOk);
-  while (!sweep.done() && results.stage != SweepStage::kPoints) {
+  // Rise, rest and first look take 0.75 s at 30 Hz, the repeats half a second.
+  for (int blocks = 0; !sweep.done() && blocks < 1400;) {
+    blocks += results.stage == SweepStage::kPoints ? 1 : 0;
     sweep.step();
   }
+  EXPECT_TRUE(results.points().empty());
   stream.spike(volts);
   while (!sweep.done()) {
     sweep.step();

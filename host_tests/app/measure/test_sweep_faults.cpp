@@ -421,7 +421,7 @@ TEST(SweepFaults, AReferenceThatLosesAFifthWithinAFrequencyRaisesNothing) {
   SweepSettings settings = default_sweep_settings();
   settings.acceleration_limit_mps2 = 1.0;
   settings.level_mps2 = 0.9;  // 0.9 V at the reference, 3.6 V of drive.
-  for (int blocks = 180; blocks < 680; blocks += 30) {
+  for (int blocks = 620; blocks < 1540; blocks += 60) {
     SCOPED_TRACE(blocks);
     FadingReference stream;
     static SweepResults results;

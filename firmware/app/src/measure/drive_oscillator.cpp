@@ -14,6 +14,7 @@ constexpr double kSineShare = 0.9;   // Of the slope.
 constexpr double kRampShare = 0.09;  // The rest covers rounding to words.
 constexpr double kSteepest = 1.5;    // Slope of a^2 (3 - 2a) in the middle.
 constexpr double kAmplitudeShare = 0.999;
+constexpr double kLowShare = 0.0625;  // From which a slow rise at another frequency begins.
 
 }  // namespace
 
@@ -65,7 +66,8 @@ std::uint32_t DriveOscillator::go_to(double frequency_hz, double amplitude_v,
     up_ = {amplitude_v, ramp_frames(amplitude_v - from_v_, rise_s)};
     return up_.frames;
   }
-  const double between_v = amplitude_v < from_v_ ? amplitude_v : from_v_;
+  const double least_v = amplitude_v < from_v_ ? amplitude_v : from_v_;
+  const double between_v = rise_s > 0.0 ? kLowShare * least_v : least_v;
   down_ = {between_v, ramp_frames(between_v - from_v_, 0.0)};
   if (down_.frames == 0) {
     set_frequency(frequency_hz);

@@ -25,11 +25,17 @@ constexpr double kLookShare = 0.25;           // Of the drive, where the first l
 constexpr double kFeeble_mps2_per_v = 400.0;  // A shaker; one that may be livelier than the limit
 constexpr double kSlowRise_s = 2.0;           // over the first drive is looked at slowly.
 constexpr std::uint32_t kMostLooks = 6;
-constexpr double kLimitShare = 0.94;     // The level may be off by 5 %, and stays below the limit.
-constexpr double kRoundedSteps = 0.2;    // Of few steps: one.
-constexpr double kRoomShare = 0.9;       // Above it the level is lowered at once,
-constexpr double kLoweredShare = 0.5;    // to this share.
-constexpr double kCautiousShare = 0.25;  // Of the limit, before this frequency was seen.
+constexpr double kLimitShare = 0.94;      // The level may be off by 5 %, and stays below the limit.
+constexpr double kRoundedSteps = 0.2;     // Of few steps: one.
+constexpr double kRoomShare = 0.9;        // Above it the level is lowered at once,
+constexpr double kLoweredShare = 0.5;     // to this share.
+constexpr double kCautiousShare = 0.25;   // Of the limit, before this frequency was seen;
+constexpr double kUnexpectedShare = 0.5;  // there more than this is too much,
+constexpr double kNewsShare = 0.25;       // once the drive has risen so far;
+constexpr double kCarefree = 20.0;        // and a limit of that many times the level is far.
+constexpr double kTwice = 2.0;
+constexpr double kRisePeriods = 16.0;  // Where it is near, for the shaker to be seen while it
+constexpr double kLeastRise_s = 0.02;  // rises.
 constexpr std::uint64_t kMinEqualWords = 256;
 
 std::uint32_t frames_of(double frames) noexcept {
@@ -179,7 +185,11 @@ void Sweep::watch() noexcept {
     return;
   }
   const double peak_v = reference_peak_v() - kNoisePeak * results_.inputs.silent_reference.noise_v;
-  const bool is_too_much = acceleration_of(peak_v) > results_.settings.acceleration_limit_mps2;
+  // What still swings of the frequency before is no news of this one.
+  const bool is_cautious = !work_.target_.is_close && work_.drive_per_acceleration_ > 0.0 &&
+                           work_.drive_.risen_share() > kNewsShare;
+  const bool is_too_much = acceleration_of(peak_v) > (is_cautious ? kUnexpectedShare : 1.0) *
+                                                         results_.settings.acceleration_limit_mps2;
   if (is_too_much && !full_scale && !(work_.drive_per_acceleration_ > 0.0) &&
       !(work_.drive_.amplitude_v() > few_steps_v())) {
     work_.target_.exceeds_by_few_steps = true;  // Unless it does so without them, too.
@@ -203,10 +213,11 @@ double Sweep::reference_peak_v() const noexcept {
 }
 
 void Sweep::lower_level(bool full_scale) noexcept {
-  const bool is_first_look = !(work_.drive_per_acceleration_ > 0.0);
-  work_.target_.was_overrange = work_.target_.was_overrange || full_scale || !is_first_look;
-  if (is_first_look) {
-    // Nothing is known yet, so it is the drive that was too much, not the level.
+  const bool is_look =
+      !work_.target_.is_close && !(full_scale && work_.drive_per_acceleration_ > 0.0);
+  work_.target_.was_overrange = work_.target_.was_overrange || full_scale || !is_look;
+  if (is_look) {
+    // Nothing is known of this frequency yet: it is the drive that was too much, not the level.
     ++work_.target_.tries;
     if (work_.target_.tries > kMostLooks) {
       // With next to no drive left, a channel has got there by itself.
@@ -214,12 +225,15 @@ void Sweep::lower_level(bool full_scale) noexcept {
       return;
     }
     work_.is_lowering_ = true;
-    drive_to(kLookShare * work_.drive_.present_v());
+    const double share = work_.drive_per_acceleration_ > 0.0 ? 0.5 : kLookShare;
+    drive_to(share * std::min(work_.drive_.present_v(), work_.drive_.amplitude_v()));
     return;
   }
   work_.level_scale_ *= 0.5;
   if (work_.level_scale_ < kLeastScale) {
-    fail(Status::kSaturated);
+    const bool is_offset =
+        work_.reference_monitor_.is_at_one_rail() || work_.device_monitor_.is_at_one_rail();
+    fail(is_offset ? Status::kDcDrift : Status::kSaturated);
     return;
   }
   work_.is_lowering_ = true;
@@ -352,12 +366,19 @@ void Sweep::begin_target(double frequency_hz) noexcept {
   drive_to(amplitude_v);
 }
 
-// While the shaker is not known, the limit is to be seen before the rise has gone far beyond it.
+// While it is not known what the shaker makes of the drive, at all or at this frequency, the limit
+// is to be seen before the rise has gone far beyond it.
 double Sweep::rise_s() const noexcept {
-  const bool is_slow = !(work_.drive_per_acceleration_ > 0.0) &&
-                       results_.settings.acceleration_limit_mps2 <
-                           kFeeble_mps2_per_v * kFirstDriveShare * results_.settings.drive_limit_v;
-  return is_slow ? kSlowRise_s : 0.0;
+  const double limit = results_.settings.acceleration_limit_mps2;
+  if (work_.drive_per_acceleration_ > 0.0) {
+    // A resonance that a fast rise excites adds as much again.
+    const double far = work_.target_.is_close ? kTwice : kCarefree;
+    return limit < far * aim_mps2() ? kLeastRise_s + kRisePeriods / work_.target_.frequency_hz
+                                    : 0.0;
+  }
+  return limit < kFeeble_mps2_per_v * kFirstDriveShare * results_.settings.drive_limit_v
+             ? kSlowRise_s
+             : 0.0;
 }
 
 void Sweep::drive_to(double amplitude_v) noexcept {
@@ -372,6 +393,8 @@ void Sweep::drive_to(double amplitude_v) noexcept {
   work_.block_is_spent_ = true;
   work_.reference_monitor_.clear_equal_words();
   work_.device_monitor_.clear_equal_words();
+  work_.reference_monitor_.clear_rails();
+  work_.device_monitor_.clear_rails();
 }
 
 void Sweep::begin_repeat() noexcept {

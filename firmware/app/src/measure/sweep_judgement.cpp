@@ -11,22 +11,26 @@ namespace emax::app {
 namespace {
 
 constexpr double kWeakSigmas = 8.0;
+constexpr double kMostLeak = 0.015;  // Of percent with k = 2: three standard uncertainties.
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
-constexpr double kSurelySeen = 1.5;       // Times where a device is seen.
-constexpr double kBlindShare = 0.1;       // Of the drive limit, while nothing was seen at all.
-constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
-constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
-constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
+constexpr double kSurelySeen = 1.5;         // Times where a device is seen.
+constexpr double kBlindShare = 0.1;         // Of the drive limit, while nothing was seen at all,
+constexpr double kBlind_mps2_per_v = 40.0;  // and no more than lets this shaker reach the limit.
+constexpr double kContradiction = 0.67;     // Of what the device saw per drive before.
+constexpr double kConfirmedWithin = 0.1;    // Two looks that agree.
+constexpr double kConfirmingShare = 0.5;    // Of the drive, for the second of them.
 constexpr std::uint32_t kMaxTries = 12;
 constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
 constexpr double kDistortedShare = 0.1;  // An error above,
-constexpr double kFlaggedShare = 0.03;   // flagged above.
+constexpr double kFlaggedShare = 0.03;   // flagged above;
+constexpr double kMixedShare = 0.06;     // more is what an exchange in the midst of a look leaves.
 constexpr double kFewSteps = 0.0025;     // Of full scale: five steps of 12 bits, 8 %.
 // Times that, at the check, for what the limit permits: the first look at a frequency takes a
 // quarter, and the shaker may be livelier there.
 constexpr double kCautiousSteps = 2.5;
 constexpr double kSixOfFive = 1.2;
+constexpr double kManySteps = 4.0;
 constexpr std::uint64_t kStuckWords = 128;
 constexpr double kOffsetShare = 0.02;  // Of full scale, against the silence.
 constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
@@ -38,6 +42,7 @@ constexpr double kRingingScale = 8.0;         // Of the settling time, for each 
 constexpr double kLookShare = 0.25;           // and of the drive, for the last.
 constexpr double kMostHum = 0.1;              // Of the ratio, at a point,
 constexpr double kMostHumOfCheck = 0.02;      // and at the check, which others are judged by.
+constexpr double kHumPeak = 1.5;              // Of its rms part; more than a sine's.
 constexpr double kSwappedShare = 0.16;        // Of the squares of the distances to both.
 constexpr double kAlike2 = 4e-4;              // Square of a distance that says nothing: 2 %.
 constexpr double kForeseen = 0.09;            // Square of a share of the 1/K that is expected,
@@ -84,10 +89,11 @@ struct Sweep::Reading {
   SineFitResult fit;
   double weak_v = 0.0;   // Below this it may be noise.
   double doubt_v = 0.0;  // What noise and hum make of its mean.
+  double leak_v = 0.0;   // What the other channel may make of it by crosstalk.
   double distortion = 0.0;
   double least_v() const noexcept { return fit.amplitude_v - weak_v; }
   double most_v() const noexcept { return fit.amplitude_v + weak_v; }
-  bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v); }
+  bool is_weak() const noexcept { return !(fit.amplitude_v > weak_v + leak_v); }
   bool is_strong() const noexcept { return fit.amplitude_v > 10.0 * weak_v; }
   // The phase is good to 0.15 degrees.
   bool is_clear() const noexcept { return fit.amplitude_v > 50.0 * weak_v; }
@@ -120,8 +126,11 @@ Sweep::Reading Sweep::reading_of(const SineFitResult& fit,
 }
 
 void Sweep::end_repeat() noexcept {
-  const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
-  const Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
+  Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
+  Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
+  const double leak = kMostLeak * results_.settings.crosstalk_expanded_percent;
+  reference.leak_v = leak * device.fit.amplitude_v;
+  device.leak_v = leak * reference.fit.amplitude_v;
   if (work_.repeats_.count == 0) {
     judge_first(reference, device);
     if (done() || work_.block_is_spent_) {
@@ -357,6 +366,13 @@ double Sweep::room_mps2(double reference_v, double device_v) const noexcept {
   return of_device < of_reference ? of_device : of_reference;
 }
 
+// Of the ratio: from the check, or from the frequency before, which knows of no resonance ahead.
+double Sweep::least_expected() const noexcept {
+  return results_.stage == SweepStage::kCheckAfter
+             ? magnitude(results_.check_before)
+             : std::min(magnitude(work_.last_ratio_), 1.0 / magnitude(inverse_expected()));
+}
+
 // More drive, because the reference reads less than the level. It may read less because it has just
 // died, or because its gain has changed: the limit of acceleration depends on it.
 bool Sweep::may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept {
@@ -376,13 +392,17 @@ bool Sweep::may_rise(const Reading& reference, const Reading& device, double nee
     suspect(device.is_weak() ? Status::kNoDevice : Status::kNoReference);
     return false;
   }
-  if (is_permitted && reference.distortion <= kDistortedShare) {
+  // Of few steps the drive is less of a sine.
+  const double most = drive_v < kManySteps * few_steps_v() ? kDistortedShare : kMixedShare;
+  if (is_permitted && reference.distortion <= most) {
     target.permitted_v = is_look ? SweepWorkspace::kPermittedStep * needed_v : target.permitted_v;
     return true;
   }
   if (!is_permitted && reference.distortion <= kDistortedShare && work_.device_v_per_v_ > 0.0 &&
-      device.fit.amplitude_v > kContradiction * drive_v * work_.device_v_per_v_) {
-    // The device sees as much as before.
+      device.fit.amplitude_v > kContradiction * drive_v * work_.device_v_per_v_ &&
+      kContradiction * ratio_factor() * device.fit.amplitude_v >
+          least_expected() * reference.fit.amplitude_v) {
+    // The device sees as much as before, and more than the reference lets it.
     suspect(Status::kNoReference);
     return false;
   }
@@ -407,7 +427,8 @@ void Sweep::raise_drive(const Reading& reference, const Reading& device) noexcep
     suspect(Status::kWeakSignal);
     return;
   }
-  const double limit_v = kBlindShare * results_.settings.drive_limit_v;
+  const double limit_v = std::min(kBlindShare * results_.settings.drive_limit_v,
+                                  results_.settings.acceleration_limit_mps2 / kBlind_mps2_per_v);
   const double permitted_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
   const double most_v = limit_v < permitted_v ? limit_v : permitted_v;
   if (work_.drive_.amplitude_v() >= most_v) {
@@ -549,7 +570,7 @@ void Sweep::end_target() noexcept {
   const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
   const bool is_judged = hum <= kMostHumOfCheck;
-  const Status status = is_judged ? plausibility_of(ratio, by_noise) : Status::kOk;
+  const Status status = is_judged ? plausibility_of(ratio, by_noise + kHumPeak * hum) : Status::kOk;
   if (status != Status::kOk) {
     suspect(status);
     return;
@@ -656,8 +677,8 @@ Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept
   }
   // Past half a turn of lag the phase begins again at the top.
   const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * expected2;
-  is_wrong =
-      is_wrong || (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz && !went_on);
+  is_wrong = is_wrong ||
+             (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz + noise && !went_on);
   return is_wrong ? cables_of(ratio, expected, swapped) : Status::kOk;
 }
 

@@ -28,7 +28,8 @@ class DriveOscillator {
   /// Moves to this frequency and amplitude, from the next frame on.
   ///
   /// @param[in] amplitude_v 0 to `max_amplitude_v(frequency_hz)`.
-  /// @param[in] rise_s      That the amplitude takes at least to rise.
+  /// @param[in] rise_s      That the amplitude takes at least to rise, at another frequency from a
+  ///                        sixteenth of the smaller one of both amplitudes; 0: as it comes.
   /// @returns The number of frames until it is there.
   std::uint32_t go_to(double frequency_hz, double amplitude_v, double rise_s = 0.0) noexcept;
 
@@ -40,6 +41,11 @@ class DriveOscillator {
 
   /// @returns The amplitude of the last frame, in V.
   double present_v() const noexcept;
+
+  /// @returns That over the one that it moves to; 0 before the frequency is reached.
+  double risen_share() const noexcept {
+    return frequency_hz_ == next_frequency_hz_ ? present_v() / target_v_ : 0.0;
+  }
 
  private:
   struct Ramp {

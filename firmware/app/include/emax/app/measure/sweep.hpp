@@ -108,6 +108,7 @@ class Sweep {
   bool is_level_little() const noexcept;
   void fail_at_level() noexcept;
   double room_mps2(double reference_v, double device_v) const noexcept;
+  double least_expected() const noexcept;
   bool may_rise(const Reading& reference, const Reading& device, double needed_v) noexcept;
   bool look_for_exchange(const Reading& reference, const Reading& device) noexcept;
   double seen_v(const Reading& reference, const Reading& device) const noexcept;
