@@ -103,6 +103,29 @@ SweepSettings near_the_limit(double level_mps2, double limit_mps2) {
   return settings;
 }
 
+// A level far below what a step of the drive makes: the drive once went on below nothing, and then
+// to ten times the limit.
+TEST(SweepLimit, ALevelFarBelowAStepEndsBeforeTheDriveIsNone) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    BenchSettings bench;
+    bench.seed = seed;
+    bench.noise_v = 0.05;
+    bench.shaker.gain = 200.0;
+    bench.device = {0.01, 20000.0, 0.3182};
+    bench.device_gain = 100.0;
+    bench.front_end.reference_v = 50.0;
+    SweepSettings settings = near_the_limit(0.05, 5.0);
+    settings.check_hz = 30.0;
+    settings.device_gain = 100.0;
+    settings.expected_sensitivity = 0.01;
+    settings.reference_full_scale_v = 50.0;
+    SweepRun run(bench);
+    run.to_end(settings);
+    EXPECT_EQ(run.sweep.status, Status::kFewSteps) << emax::explain(run.sweep.status);
+    EXPECT_LE(run.bench.peak_mps2(), 1.1 * 5.0 + 2.0 * 200.0 * 10.0 / 2048.0);
+  }
+}
+
 // What one frequency needs of drive is too much at the next, on a resonance of armature or
 // suspension, and changes of the drive make one ring. Once 2.3 times the limit, without a word.
 TEST(SweepLimit, ResonancesOfTheShakerAreSeenWhileTheDriveRises) {

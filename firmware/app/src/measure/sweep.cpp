@@ -301,7 +301,7 @@ double Sweep::aim_mps2() const noexcept {
   const double most = work_.target_.is_close ? most_mps2()
                                              : kCautiousShare * work_.exchanged_share_ *
                                                    results_.settings.acceleration_limit_mps2;
-  return wanted < most ? wanted : most;
+  return wanted < most ? wanted : std::max(most, 0.0);
 }
 
 // The converter rounds by half a step, which a resonance of the shaker magnifies.

@@ -31,6 +31,7 @@ constexpr double kFewSteps = 0.0025;     // Of full scale: five steps of 12 bits
 constexpr double kCautiousSteps = 2.5;
 constexpr double kSixOfFive = 1.2;
 constexpr double kManySteps = 4.0;
+constexpr double kHalfStep = 0.1;
 constexpr std::uint64_t kStuckWords = 128;
 constexpr double kOffsetShare = 0.02;  // Of full scale, against the silence.
 constexpr double kTurnedRound = 0.9;   // Cosine of the angle to half a turn,
@@ -229,6 +230,11 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
     return;
   }
   const double needed_v = std::min(aim * per_acceleration, kSurelySeen * seen_v(reference, device));
+  if (!(needed_v > kHalfStep * few_steps_v())) {
+    fail(few_steps());  // Such a drive is none.
+    results_.least_level_mps2 = work_.least_level_mps2_;
+    return;
+  }
   ++work_.target_.tries;
   if (needed_v > most_v * (1.0 + kLevelTolerance) || work_.target_.tries > kMaxTries) {
     fail_at_level();
