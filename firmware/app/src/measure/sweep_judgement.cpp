@@ -223,7 +223,7 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
   }
   work_.target_.acceleration_mps2 = acceleration;
   work_.drive_per_acceleration_ = per_acceleration;
-  if (drive_v >= few_steps_v() || !(work_.least_level_mps2_ > 0.0)) {
+  if (drive_v >= few_steps_v() || !(work_.least_level_mps2_ > 0.0 || is_level_little())) {
     work_.least_level_mps2_ = few_steps_mps2;  // By a drive of fewer steps, roughly.
   }
   if (abs(acceleration / aim - 1.0) <= kLevelTolerance) {
@@ -576,7 +576,7 @@ void Sweep::end_target() noexcept {
   const Complex ratio = ratio_of(scatter.reference, scatter.device);
   work_.device_v_per_v_ = magnitude(scatter.device) / work_.drive_.amplitude_v();
   const bool is_judged = hum <= kMostHumOfCheck;
-  const Status status = is_judged ? plausibility_of(ratio, by_noise + kHumPeak * hum) : Status::kOk;
+  const Status status = is_judged ? plausibility_of(ratio, by_noise, kHumPeak * hum) : Status::kOk;
   if (status != Status::kOk) {
     suspect(status);
     return;
@@ -642,7 +642,7 @@ void Sweep::foresee_ringing() noexcept {
 
 // Where device and reference give the same volts, exchanged channels have the same ratio, but for
 // the phase: there it is noise that chooses between the two, and a resonance shows them apart.
-Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept {
+Status Sweep::plausibility_of(const Complex& ratio, double noise, double turn_rad) const noexcept {
   const bool is_check = results_.stage != SweepStage::kPoints;
   const double factor = ratio_factor();
   const double sheet = results_.settings.expected_sensitivity;
@@ -683,8 +683,9 @@ Status Sweep::plausibility_of(const Complex& ratio, double noise) const noexcept
   }
   // Past half a turn of lag the phase begins again at the top.
   const bool went_on = !is_check && expected.re < 0.0 && to_expected2 < 0.25 * expected2;
-  is_wrong = is_wrong ||
-             (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz + noise && !went_on);
+  is_wrong =
+      is_wrong ||
+      (phase > kLead_rad + kLeadPerHz_rad * work_.target_.frequency_hz + turn_rad && !went_on);
   return is_wrong ? cables_of(ratio, expected, swapped) : Status::kOk;
 }
 

@@ -128,7 +128,7 @@ class Sweep {
   bool has_turned_round(const Complex& ratio, const Complex& before) const noexcept;
   double inverse_slope() const noexcept;
   Complex inverse_expected() const noexcept;
-  Status plausibility_of(const Complex& ratio, double noise) const noexcept;
+  Status plausibility_of(const Complex& ratio, double noise, double turn_rad = 0.0) const noexcept;
   void store_point(const PointScatter& scatter, const Complex& ratio) noexcept;
   void begin_next() noexcept;
   void fail(Status status) noexcept;
