@@ -244,5 +244,14 @@ TEST(InstrumentLearn, AnswerCanBeSentBackBesideTheSweepsPoints) {
   EXPECT_EQ(i.ask("*LRN?"), learned);
 }
 
+// IEEE 488.2, 8.4.1: answers of one message are separated by a semicolon.
+TEST(InstrumentLearn, AnswerIsSeparatedFromThoseBesideIt) {
+  InstrumentBench i;
+  const std::string learned = i.ask("*LRN?");
+  EXPECT_EQ(i.ask("*OPC?;*LRN?"), "1;" + learned);
+  EXPECT_EQ(i.ask("*IDN?;*LRN?;*OPC?"), i.ask("*IDN?") + ";" + learned + ";1");
+  EXPECT_EQ(i.ask("*LRN?;*LRN?"), learned + ";" + learned);
+}
+
 }  // namespace
 }  // namespace emax

@@ -100,7 +100,7 @@ void InstrumentCommands::headers(Instrument& /*i*/, Call& call) noexcept {
 void InstrumentCommands::learn(Instrument& i, Call& call) noexcept {
   const bool is_item = call.stage() == Call::Stage::kItem;
   if (is_item && call.item() == 0) {
-    call.answer().piece(kFreeSettings);
+    call.answer().word(kFreeSettings);
     call.answer().join();
     call.answer().number(i.common_percent());
     return;
