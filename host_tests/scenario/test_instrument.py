@@ -197,6 +197,31 @@ class InstrumentSweeps(ProgramTest):
             self.succeed("report", "--instrument", remote.port, "--acceleration-limit", "3", *QUICK)
             self.assertEqual(remote.ask("SOUR:LIM?;LEV?"), "3;1")
 
+    # Each pair of what limits one another, and what limits it by a rate: low and high.
+    PAIRS = [
+        ([("--drive-full-scale", 2), ("--drive-limit", 2)], [("--drive-full-scale", 10), ("--drive-limit", 5)]),
+        ([("--drive-full-scale", 10), ("--drive-limit", 5)], [("--drive-full-scale", 100), ("--drive-limit", 50)]),
+        ([("--drive-limit", 0.5), ("--slew", 300)], [("--drive-limit", 10), ("--slew", 5000)]),
+        ([("--level", 1), ("--acceleration-limit", 2)], [("--level", 25), ("--acceleration-limit", 40)]),
+    ]
+    LIMITS = "SOUR:FULL?;:SOUR:LIM:VOLT?;:SOUR:SLEW?;:SOUR:LEV?;:SOUR:LIM?"
+
+    def test_limits_rise_and_fall_in_either_order(self) -> None:
+        """The simulated bench takes the same options, so no state on the way to them may be refused."""
+        names = ["--drive-full-scale", "--drive-limit", "--slew", "--level", "--acceleration-limit"]
+        quick = [*QUICK, "--frequencies", "80,160,320"]
+        with TcpInstrument() as remote:
+            for low, high in self.PAIRS:
+                for wanted in (high, low[::-1], high[::-1], low)[:4 if low is self.PAIRS[0][0] else 2]:
+                    with self.subTest(wanted):
+                        options = [str(word) for pair in wanted for word in pair]
+                        got = self.run_program("report", "--instrument", remote.port, *options, *quick)
+                        self.assertNotIn(b"refuses", got.stderr)
+                        self.assertIn(got.returncode, (0, 3))  # What the bench makes of them is another matter.
+                        now = dict(zip(names, map(float, remote.ask(self.LIMITS).split(";"))))
+                        self.assertEqual({name: now[name] for name, _ in wanted}, dict(wanted))
+                remote.ask("*RST;:SYST:ERR?")
+
 
 class InstrumentFaults(ProgramTest):
     def test_a_fault_of_its_sweep_keeps_what_was_measured(self) -> None:

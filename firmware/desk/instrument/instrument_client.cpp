@@ -262,23 +262,38 @@ Problem InstrumentClient::set_row(const app::SettingRow& row, const app::Setting
   return set(command, option);
 }
 
-// A limit is set before the level that it must not be below; a level that becomes smaller makes way
-// for a limit below the one of before.
-Problem InstrumentClient::set_level_first(const ReportOptions& options) {
-  std::string level;
-  if (Problem problem = ask(":SOUR:LEV?", level)) {
-    return problem;
+// The rows are set from the last to the first: what limits another one comes before it, which is
+// right where both rise. Where they fall, the one that is limited makes way first.
+Problem InstrumentClient::lower_first(const ReportOptions& options) {
+  const struct {
+    const char* command;
+    const char* option;
+    double wanted;
+    bool is_set;
+  } limited[] = {
+      {":SOUR:LEV", "level", options.sweep.level_mps2, true},
+      {":SOUR:LIM:VOLT", "drive-limit", options.sweep.drive_limit_v,
+       options.given_value("drive-limit") != nullptr},
+  };
+  for (const auto& one : limited) {
+    std::string present;
+    Problem problem = one.is_set ? ask(std::string(one.command) + "?", present) : Problem{};
+    if (!problem && one.is_set && one.wanted < std::strtod(present.c_str(), nullptr)) {
+      problem = set(std::string(one.command) + " " + number_text(one.wanted),
+                    std::string("--") + one.option);
+    }
+    if (problem) {
+      return problem;
+    }
   }
-  return options.sweep.level_mps2 < std::strtod(level.c_str(), nullptr)
-             ? set(":SOUR:LEV " + number_text(options.sweep.level_mps2), "--level")
-             : Problem{};
+  return {};
 }
 
 Problem InstrumentClient::set_up(const ReportOptions& options) {
   if (Problem problem = set("*CLS", "--instrument")) {
     return problem;
   }
-  if (Problem problem = set_level_first(options)) {
+  if (Problem problem = lower_first(options)) {
     return problem;
   }
   if (Problem problem = set(":SENS:SWE:FREQ " + frequencies_of(options.sweep), "--frequencies")) {
@@ -287,7 +302,7 @@ Problem InstrumentClient::set_up(const ReportOptions& options) {
   if (Problem problem = set_reference(options)) {
     return problem;
   }
-  // From the last to the first: the level after its limit.
+  // From the last to the first: level and drive after their limits.
   for (std::size_t i = std::size(app::kSweepSettingRows); i-- > 0;) {
     const app::SettingRow& row = app::kSweepSettingRows[i];
     if (row.option.name == nullptr || is_list(row.field)) {

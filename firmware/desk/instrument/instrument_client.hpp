@@ -61,7 +61,7 @@ class InstrumentClient final {
 
   Problem greet();
   Problem set(const std::string& command, const std::string& option);
-  Problem set_level_first(const ReportOptions& options);
+  Problem lower_first(const ReportOptions& options);
   Problem set_reference(const ReportOptions& options);
   Problem set_row(const app::SettingRow& row, const app::SettingRow* uncertainty,
                   const app::SweepSettings& sweep);
