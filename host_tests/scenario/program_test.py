@@ -6,7 +6,9 @@ usage: test_NAME.py PROGRAM DATA_DIRECTORY [unittest arguments]
 import json
 import os
 import pathlib
+import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -18,11 +20,35 @@ PROGRAM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve(
 
 MODEL = ["--model", "1.037,4073,0.3182,0.003,6,0.0004"]
 QUICK = ["--trials", "1000", "--trend", "none"]
+PATIENCE = 60.0  # Seconds that anything may take on a loaded machine.
 
 
 def restore_signals() -> None:
     """Whoever runs the tests in the background may have SIGINT ignored, and children inherit that."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+class TcpInstrument:
+    """`emax scpi --tcp 0`."""
+
+    def __init__(self, *arguments: str):
+        self.process = subprocess.Popen([PROGRAM, "scpi", "--tcp", "0", *arguments], stdin=subprocess.DEVNULL,
+                                        stderr=subprocess.PIPE, preexec_fn=restore_signals)
+        line = self.process.stderr.readline().decode()
+        self.port = re.search(r"([0-9.]+:\d+)\n$", line)[1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.communicate()
+
+    def ask(self, text: str) -> str:
+        host, port = self.port.rsplit(":", 1)
+        with socket.create_connection((host, int(port)), timeout=PATIENCE) as peer, peer.makefile("rb") as answers:
+            peer.sendall(text.encode() + b"\n")
+            return answers.readline().decode().rstrip("\n")
 
 
 class ProgramTest(unittest.TestCase):

@@ -5,11 +5,13 @@ usage: test_files.py PROGRAM DATA_DIRECTORY [unittest arguments]; EMAX_SHIM name
 
 import json
 import os
+import pty
 import resource
 import signal
+import time
 import unittest
 
-from program_test import DATA, MODEL, QUICK, ProgramTest, main
+from program_test import DATA, MODEL, QUICK, ProgramTest, TcpInstrument, main
 
 SHIM = os.environ.get("EMAX_SHIM", "")
 TABLES = DATA / "tables"
@@ -266,6 +268,108 @@ class FilesThatAreKept(ProgramTest):
             result = self.measure(**shim(EMAX_FAIL_AT=number))
             kept = [self.points(name) for name in os.listdir(self.directory / "out") if "frequency_response" in name]
             self.assertTrue(points in kept or b"\n" + points in result.stdout, (number, result.stderr))
+
+
+class StopsBehindTheSweep(ProgramTest):
+    """Ctrl-C while the PC evaluates or writes: the sweep took time at a bench, and its points stay."""
+    ENDLESS = ["--frequencies", FEW_POINTS[-1], "--trend", "none", "--trials", "100000000"]
+
+    def stop(self, arguments, shown: bytes, **options):
+        """Stopped once these words are on the terminal."""
+        ours, theirs = pty.openpty()
+        process = self.start_program(*arguments, stderr=theirs, **options)
+        os.close(theirs)
+        text = b""
+        is_sent = False
+        try:
+            while piece := os.read(ours, 4096):
+                text += piece
+                if shown in text and not is_sent:
+                    process.send_signal(signal.SIGINT)
+                    is_sent = True
+        except OSError:  # The other side has been closed.
+            pass
+        os.close(ours)
+        output, _ = process.communicate(timeout=200)
+        self.assertEqual(process.returncode, 130)
+        lines = [line for line in text.decode("ascii").replace("\r\n", "\n").split("\r") if line.endswith("\n")]
+        self.assertEqual(len(lines), 1, text)
+        return output, lines[0]
+
+    def whole(self, *options) -> bytes:
+        self.run_program("report", *FEW_POINTS, *options, "--out", "whole")
+        return (self.directory / "whole/frequency_response.csv").read_bytes()
+
+    def test_points_are_kept(self):
+        whole = self.whole()
+        report = ["report", *self.ENDLESS, "--out", "out"]
+        output, line = self.stop(report, b"Monte Carlo")
+        self.assertEqual(output, b"")
+        self.assertEqual(line, "emax: stopped; the points of the sweep are kept in out/frequency_response.csv, which --points takes\n")
+        self.assertEqual(os.listdir(self.directory / "out"), ["frequency_response.csv"])
+        self.assertEqual((self.directory / "out/frequency_response.csv").read_bytes(), whole)
+        self.succeed("report", "--points", "out/frequency_response.csv", *QUICK)
+        # Whatever an earlier sweep has left stays, too.
+        other = self.whole("--bench-seed", "2")
+        _, line = self.stop([*report, "--bench-seed", "2"], b"Monte Carlo")
+        self.assertIn("out/stopped_frequency_response.csv", line)
+        self.stop(report, b"Monte Carlo")
+        kept = {name: (self.directory / "out" / name).read_bytes() for name in os.listdir(self.directory / "out")}
+        self.assertEqual(kept, {"frequency_response.csv": whole, "stopped_frequency_response.csv": whole,
+                                "stopped_frequency_response.1.csv": other})
+
+    def test_points_are_kept_while_pictures_are_drawn(self):
+        program = self.directory / "bin/gnuplot"
+        program.parent.mkdir()
+        whole = self.whole()
+        started = self.directory / "started"
+        program.write_text(f"#!/bin/sh\nPATH=/usr/bin:/bin\necho > '{started}'; exec sleep 100\n")
+        program.chmod(0o755)
+        process = self.start_program("report", *FEW_POINTS, "--out", "out", env=os.environ | {"PATH": str(program.parent)})
+        deadline = time.monotonic() + 60
+        while not started.exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        output, error = process.communicate(timeout=200)
+        self.assertEqual((process.returncode, output), (130, b""))
+        self.assert_one_line(error, "stopped; ", "kept in out/frequency_response.csv")
+        self.assertEqual((self.directory / "out/frequency_response.csv").read_bytes(), whole)
+        self.assertEqual(os.listdir(self.directory / "out"), ["frequency_response.csv"])
+
+    def test_points_before_a_fault_are_kept(self):
+        fault = ["--bench-fault", "unplugged-device@0.8"]
+        whole = self.whole(*fault)
+        _, line = self.stop(["report", *self.ENDLESS, *fault, "--out", "out"], b"Monte Carlo")
+        self.assertRegex(line, r"\Aemax: no device at .* of 8 points kept, drive at zero\); stopped; .* in out/frequency_response.csv")
+        points = [row.split(",")[:5] for row in whole.decode().splitlines()]
+        kept = [row.split(",")[:5] for row in (self.directory / "out/frequency_response.csv").read_text().splitlines()]
+        self.assertEqual(kept, points)
+
+    def test_what_no_file_holds_is_printed(self):
+        whole = self.whole()
+        (self.directory / "out").mkdir()
+        os.mkfifo(self.directory / "out/stopped_frequency_response.csv")
+        (self.directory / "out/frequency_response.csv").write_text("of an earlier sweep\n")
+        output, line = self.stop(["report", *self.ENDLESS, "--out", "out"], b"Monte Carlo")
+        self.assertEqual(output, whole)
+        self.assertIn("on standard output", line)
+        self.assertEqual((self.directory / "out/frequency_response.csv").read_text(), "of an earlier sweep\n")
+
+    def test_what_is_lost_without_a_directory_is_said(self):
+        output, line = self.stop(["report", *self.ENDLESS], b"Monte Carlo")
+        self.assertEqual((output, self.files()), (b"", []))
+        self.assertRegex(line, r"\Aemax: stopped; the sweep .* is lost: --out DIR keeps its points")
+
+    def test_an_instrument_has_its_points_still(self):
+        with TcpInstrument() as remote:
+            _, line = self.stop(["report", *self.ENDLESS, "--instrument", remote.port], b"Monte Carlo")
+            self.assertRegex(line, r"\Aemax: stopped; .* still in the instrument: FETC:TRAC\? answers them; --out DIR")
+            self.assertEqual(len(remote.ask("FETC:TRAC?").split(",")), 5 * 8)
+            _, line = self.stop(["report", *self.ENDLESS, "--instrument", remote.port, "--out", "out"], b"Monte Carlo")
+            self.assertIn("kept in out/frequency_response.csv", line)
+        rows = (self.directory / "out/frequency_response.csv").read_text().splitlines()
+        self.assertEqual(len([row for row in rows[1:] if row[0] != "#"]), 8)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ usage: test_instrument.py PROGRAM DATA_DIRECTORY [unittest arguments]
 import json
 import os
 import pty
-import re
 import select
 import signal
 import socket
@@ -16,32 +15,7 @@ import threading
 import time
 import tty
 
-from program_test import PROGRAM, QUICK, ProgramTest, main, restore_signals
-
-PATIENCE = 60.0  # Seconds that anything may take on a loaded machine.
-
-
-class TcpInstrument:
-    """`emax scpi --tcp 0`."""
-
-    def __init__(self, *arguments: str):
-        self.process = subprocess.Popen([PROGRAM, "scpi", "--tcp", "0", *arguments], stdin=subprocess.DEVNULL,
-                                        stderr=subprocess.PIPE, preexec_fn=restore_signals)
-        line = self.process.stderr.readline().decode()
-        self.port = re.search(r"([0-9.]+:\d+)\n$", line)[1]
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.kill()
-        self.process.communicate()
-
-    def ask(self, text: str) -> str:
-        host, port = self.port.rsplit(":", 1)
-        with socket.create_connection((host, int(port)), timeout=PATIENCE) as peer, peer.makefile("rb") as answers:
-            peer.sendall(text.encode() + b"\n")
-            return answers.readline().decode().rstrip("\n")
+from program_test import PATIENCE, PROGRAM, QUICK, ProgramTest, TcpInstrument, main, restore_signals
 
 
 class SerialInstrument:

@@ -99,6 +99,14 @@ Problem add_pictures(const app::EvaluationResults& results, const app::ReportCon
   return {};
 }
 
+// @returns The name of the file; empty if there is none.
+std::string put_points(const app::EvaluationResults* results, const app::ReportContext& context,
+                       OutputFiles& files) {
+  const Problem problem =
+      files.add(kPointsTable, [&](app::TextWriter& out) { write_points(results, context, out); });
+  return problem || files.commit() ? "" : files.prefix() + kPointsTable;
+}
+
 }  // namespace
 
 Problem write_files(const app::EvaluationResults& results, const app::ReportContext& context,
@@ -142,12 +150,19 @@ void write_points(const app::EvaluationResults* results, const app::ReportContex
 
 std::string write_points_alone(const app::EvaluationResults* results,
                                const app::ReportContext& context, OutputFiles& files) {
-  constexpr const char* kPrefix = "failed_";
   files.abandon();
-  files.set_prefix(files.has(kPointsTable) ? kPrefix : "");
-  const Problem problem =
-      files.add(kPointsTable, [&](app::TextWriter& out) { write_points(results, context, out); });
-  return problem || files.commit() ? "" : files.prefix() + kPointsTable;
+  files.set_prefix(files.has(kPointsTable) ? "failed_" : "");
+  return put_points(results, context, files);
+}
+
+std::string write_stopped_points(const app::EvaluationResults* results,
+                                 const app::ReportContext& context, OutputFiles& files) {
+  files.abandon();
+  if (files.has(kPointsTable)) {
+    files.set_prefix("stopped_");
+    files.set_aside(kPointsTable);  // That of the last stop.
+  }
+  return put_points(results, context, files);
 }
 
 Problem write_fault_files(const app::ReportContext& context, const app::EvaluationResults* refused,

@@ -33,6 +33,11 @@ void write_points(const app::EvaluationResults* results, const app::ReportContex
 std::string write_points_alone(const app::EvaluationResults* results,
                                const app::ReportContext& context, OutputFiles& files);
 
+/// The same for a sweep whose evaluation was stopped; no table of an earlier one is lost by it,
+/// either.
+std::string write_stopped_points(const app::EvaluationResults* results,
+                                 const app::ReportContext& context, OutputFiles& files);
+
 /// Writes what there is of a measurement that led to no result, and puts it in place.
 ///
 /// @param[in] context With a measurement.

@@ -198,9 +198,10 @@ Problem BenchJob::measure_with_instrument(const ReportOptions& options, ConsoleP
   }
   if (!problem) {
     problem = client.measure(progress);
-  }
-  if (!problem) {
-    problem = client.fetch(remote_);
+    if (!problem) {
+      problem = client.fetch(remote_);
+      has_left_sweep_ = static_cast<bool>(problem);
+    }
   }
   if (problem) {
     early_points_ = client.early_points();
@@ -266,7 +267,10 @@ Problem BenchJob::unstruck() const {
 Problem BenchJob::stop() {
   const bool was_sweep = sequencer_.job() == app::Job::kSweep;
   sequencer_.abort();
-  return was_sweep ? describe_sweep() : stopped();
+  if (was_sweep) {
+    return describe_sweep();
+  }
+  return is_rest_ ? Problem{ExitStatus::kStopped, describe_sweep().line + "; stopped"} : stopped();
 }
 
 Problem BenchJob::describe_sweep() const {

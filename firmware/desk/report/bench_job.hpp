@@ -54,6 +54,14 @@ class BenchJob final {
   Problem unstruck() const;
   /// @returns Whether the sweep began at all.
   bool has_measured() const noexcept { return sequencer_.sweep().stage != app::SweepStage::kIdle; }
+  /// @returns Whether the sweep came to an end of its own, with points that a stop must not lose.
+  bool has_swept() const noexcept {
+    const app::SweepResults& sweep = sequencer_.sweep();
+    return has_measured() && sweep.done() && sweep.status != Status::kStopped &&
+           !sweep.points().empty();
+  }
+  /// @returns Whether an instrument has ended a sweep that was not fetched.
+  bool has_left_sweep() const noexcept { return has_left_sweep_; }
   /// Refers to this object.
   app::Measurement measurement() const noexcept {
     return {sequencer_.sweep(), is_remote_ ? remote_.format : bench_.format(),
@@ -73,6 +81,7 @@ class BenchJob final {
   const ReportOptions* options_ = nullptr;
   bool is_remote_ = false;
   bool is_rest_ = false;
+  bool has_left_sweep_ = false;
   std::vector<EarlyPoint> early_points_;
 };
 

@@ -208,6 +208,35 @@ Problem keep_and_report(const Problem& fault, const Results& results, bool json,
   return problem;
 }
 
+// A stop behind the sweep: its points are kept, or it is said where they are.
+Problem keep_stopped(const std::string& stop, const Results& results, const BenchJob& bench,
+                     const ReportOptions& options, OutputFiles* files) {
+  const bool is_remote = !options.instrument.empty();
+  const auto ended = [&](const std::string& words) {
+    return Problem{ExitStatus::kStopped, stop + "; " + words};
+  };
+  if (bench.has_left_sweep()) {
+    return ended("the points of its sweep are still in the instrument: FETC:TRAC? answers them");
+  }
+  if (files == nullptr) {
+    return ended(is_remote ? "the points of the sweep are still in the instrument: FETC:TRAC? "
+                             "answers them; --out DIR keeps them at a stop"
+                           : "the sweep that was measured is lost: --out DIR keeps its points at a "
+                             "stop");
+  }
+  const app::EvaluationResults* evaluation =
+      results.evaluation.has_fit() ? &results.evaluation : nullptr;
+  const std::string name = write_stopped_points(evaluation, results.context, *files);
+  if (!name.empty()) {
+    return ended("the points of the sweep are kept in " + printable(options.out_directory) + "/" +
+                 name + ", which --points takes");
+  }
+  const Problem printed =
+      print([&](app::TextWriter& out) { write_points(evaluation, results.context, out); });
+  return ended("--out cannot be written to; the points of the sweep are on standard output" +
+               (printed ? "; " + printed.line : std::string()));
+}
+
 void write_early_points(const std::vector<EarlyPoint>& points, app::TextWriter& out) {
   out.text("f_hz,amplitude,phase_deg\n");
   for (const EarlyPoint& point : points) {
@@ -355,6 +384,10 @@ Problem run_report(Span<const std::string_view> arguments) {
   if (problem_of_work.status == ExitStatus::kFault && !bench.early_points().empty()) {
     return keep_early_points(problem_of_work, bench.early_points(), files);
   }
+  const bool has_points = options.measures() && (bench.has_swept() || bench.has_left_sweep());
+  if (problem_of_work.status == ExitStatus::kStopped && has_points) {
+    return keep_stopped(problem_of_work.line, results, bench, options, files);
+  }
   const bool is_of_rest = problem_of_work && bench.has_result_of_rest();
   if (problem_of_work && !is_of_rest) {
     const bool keeps = problem_of_work.status == ExitStatus::kFault && bench.has_measured();
@@ -363,6 +396,10 @@ Problem run_report(Span<const std::string_view> arguments) {
   Problem remark;
   Problem unwritten =
       files != nullptr ? write_files(evaluation, context, *files, remark) : Problem{};
+  if (unwritten.status == ExitStatus::kStopped && has_points) {
+    const std::string fault_before = is_of_rest ? problem_of_work.line + "; " : "";
+    return keep_stopped(fault_before + unwritten.line, results, bench, options, files);
+  }
   // A measurement that no file holds is at least printed, with its points.
   const bool are_points_lost =
       unwritten.status == ExitStatus::kFault && options.measures() && !options.json;
