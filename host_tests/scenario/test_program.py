@@ -640,6 +640,15 @@ class Bench(ProgramTest):
         self.assertAlmostEqual(least, 0.05, delta=0.01)
         self.succeed("report", *QUICK, "--frequencies", "100,160,200", "--level", str(2 * least), "--bench-noise", "1e-4")
 
+    def test_a_level_above_the_least_one_is_not_told_to_be_below_it(self):
+        """Nine or ten steps make 0.1 m/s^2, which may distort it; a look at a quarter of it has fewer than five."""
+        for seed in "1", "2", "5":
+            result = self.run_program("report", *QUICK, "--level", "0.1", "--bench-seed", seed)
+            if result.returncode != 0:
+                line = self.assert_one_line(result.stderr, "five steps of the drive's converter make 0.05")
+                self.assertNotIn("expected at least", line)
+                self.assertRegex(line, "the level of 0.1 m/s.2 has about (9|10), and the last look .* raise --level")
+
     def test_limits_below_the_steps_of_the_drive_are_refused_in_words(self):
         # 2 m/s^2 for each V of the drive: five steps of 4.9 mV make 0.05 m/s^2.
         line = self.assert_one_line(self.run_program("report", "--level", "0.06", "--acceleration-limit", "0.06").stderr,

@@ -115,6 +115,21 @@ std::string words_on_buried(const app::SweepResults& sweep) {
          general(noise_v, 2) + " V: raise --level, or amplify, told by --device-gain";
 }
 
+// Of a drive that had fewer steps than five when the sweep ended. Where the level has more, it was
+// a look at a part of the level, as of one that the steps have distorted.
+std::string words_on_steps(const app::SweepResults& sweep) {
+  constexpr double kFew = 5.0;
+  const double level = sweep.settings.level_mps2;
+  const double least = sweep.least_level_mps2;
+  if (!(level > least)) {
+    return ", and the drive has fewer: expected at least that for --level";
+  }
+  return "; the level of " + general(level, 3) + " m/s^2 has about " +
+         std::to_string(std::lround(kFew * level / least)) +
+         ", and the last look at this frequency, at a part of it, had fewer than five: raise "
+         "--level, or put an attenuator behind the drive, told by --drive-full-scale";
+}
+
 // With what an option can do about it.
 //
 // @param[in] full_scale_v As above.
@@ -168,8 +183,7 @@ std::string words_on(const app::SweepResults& sweep, double full_scale_v) {
     return words;
   }
   const bool is_said = sweep.status == Status::kWeakSignal;
-  return (is_said ? "" : words + "; ") + level +
-         ", and the drive has fewer: expected at least that for --level";
+  return (is_said ? "" : words + "; ") + level + words_on_steps(sweep);
 }
 
 }  // namespace
