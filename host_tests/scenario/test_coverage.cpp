@@ -53,14 +53,12 @@ void count(const emax::WlspFit& fit, const emax::sim::Device& truth, Inside& ins
   }
 }
 
-/// A sweep on a bench, fitted.
-const emax::WlspFit& fitted(const emax::sim::BenchSettings& settings,
-                            const emax::app::SweepSettings& stated) {
+/// A sweep on a bench.
+void measure(const emax::sim::BenchSettings& settings, const emax::app::SweepSettings& stated,
+             emax::FrequencyResponse& response) {
   static emax::sim::SimBench bench;
   static emax::app::SweepResults results;
   static emax::app::SweepWorkspace work;
-  static emax::FrequencyResponse response;
-  static emax::Wlsp wlsp;
   emax::app::Sweep sweep(results, work, bench);
   EXPECT_EQ(bench.configure(settings), Status::kOk);
   EXPECT_EQ(sweep.start(stated), Status::kOk);
@@ -70,6 +68,14 @@ const emax::WlspFit& fitted(const emax::sim::BenchSettings& settings,
   EXPECT_EQ(results.status, Status::kOk)
       << emax::explain(results.status) << " seed " << settings.seed;
   EXPECT_EQ(results.copy_to(response), Status::kOk);
+}
+
+/// The same, fitted.
+const emax::WlspFit& fitted(const emax::sim::BenchSettings& settings,
+                            const emax::app::SweepSettings& stated) {
+  static emax::FrequencyResponse response;
+  static emax::Wlsp wlsp;
+  measure(settings, stated, response);
   EXPECT_EQ(wlsp.fit(response), Status::kOk) << "seed " << settings.seed;
   return wlsp.result();
 }
@@ -242,6 +248,54 @@ TEST(Coverage, OfFiveHundredBenches) {
       with_common.of[0], with_common.of[1], with_common.of[2], with_energy,
       static_cast<int>(kBenches), without_common.of[0], chi2 / static_cast<double>(kBenches),
       static_cast<double>(frames) / static_cast<double>(kBenches));
+}
+
+// With a gain that is a number the figures in band scatter with the S of each bench: their
+// intervals are in percent of S a, of each trial's S.
+TEST(Coverage, OfFiguresInBandWithAGivenGain) {
+  constexpr std::uint64_t kSweeps = 40;
+  // Of a binomial distribution with 40 trials of 0.95, 98.6 % are not below.
+  constexpr int kFewestOfForty = 35;
+  static emax::FrequencyResponse response;
+  static emax::app::EvaluationResults results;
+  static emax::app::EvaluationWorkspace workspace;
+  emax::app::Evaluation run(results, workspace);
+  emax::sim::BenchSettings bench;
+  emax::app::Settings settings = emax::app::kDefaultSettings;
+  settings.trials = Energies::kTrials;
+  settings.trend_count = 0;
+  settings.gain_mode = emax::app::GainMode::kFixed;
+  settings.gain = bench.device.sensitivity;
+  const auto finish = [&] {
+    while (!run.done()) {
+      run.step();
+    }
+    EXPECT_TRUE(results.band.exists() && results.matched.exists());
+  };
+  const emax::Accelerometer device = {bench.device.sensitivity, bench.device.natural_frequency_hz,
+                                      bench.device.damping};
+  ASSERT_EQ(run.start_from_model({device, {}}, settings, emax::app::Goal::kBand), Status::kOk);
+  finish();
+  const double truths[] = {results.percent_of(results.band.energy_v2s),
+                           results.percent_of(results.matched.energy_v2s)};
+  int inside[] = {0, 0};
+  for (bench.seed = 1; bench.seed <= kSweeps; ++bench.seed) {
+    measure(bench, emax::app::default_sweep_settings(), response);
+    ASSERT_EQ(run.start_from_points(response, settings, emax::app::Goal::kReport), Status::kOk);
+    finish();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const emax::app::FigureResults& figure = i == 0 ? results.band : results.matched;
+      const emax::CoverageInterval& interval = figure.uncertainty.symmetric_of_percent();
+      const bool is_inside = results.percent_of(interval.low) <= truths[i] &&
+                             truths[i] <= results.percent_of(interval.high);
+      inside[i] += is_inside ? 1 : 0;
+    }
+  }
+  std::printf("inside: in band %d, without its delay %d of %d\n", inside[0], inside[1],
+              static_cast<int>(kSweeps));
+  for (const int of_one : inside) {
+    EXPECT_GE(of_one, kFewestOfForty);
+  }
 }
 
 // On a quiet bench it is not noise that limits the estimates, but what no scatter shows.

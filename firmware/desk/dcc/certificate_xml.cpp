@@ -276,7 +276,8 @@ Known known_of_percent(const EvaluationResults& results, const app::EnergyUncert
     return {};
   }
   return {known.u_percent, energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s),
-          results.interval_percent_of(known.shortest, energy_v2s), results.settings.probability};
+          results.interval_percent_of(known.shortest_of_percent(), energy_v2s),
+          results.settings.probability};
 }
 
 // No signal has more, so upwards.

@@ -148,7 +148,8 @@ std::string value_of(const EvaluationResults& results, const app::EnergyUncertai
   if (!results.is_one_sided(known, energy)) {
     return percentage(percent, known.expanded_percent()) + " of&nbsp;S&nbsp;a";
   }
-  const CoverageInterval interval = results.interval_percent_of(known.shortest, energy);
+  const CoverageInterval interval =
+      results.interval_percent_of(known.shortest_of_percent(), energy);
   return percentage(percent, 0.0) + " of&nbsp;S&nbsp;a; " + words_of([&](TextWriter& out) {
            out.general(kPercent * results.settings.probability, 6).text(" % interval ");
            out.text(range_text(interval.low, interval.high).c_str()).text(" %");

@@ -1,4 +1,5 @@
 // The figures beside the maximum energy, against values found outside this code.
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -61,6 +62,7 @@ TEST(EvaluationFigures, UncertaintyIsThatOfNormalParameters) {
   // E is nearly linear in the parameters, and a uniform box has a third of the variance; both are
   // known to 0.5 % (20000 trials).
   EXPECT_NEAR(results.uncertainty.u_v2s / results.trials.result.u, std::sqrt(3.0), 0.03);
+  EXPECT_FALSE(results.band.uncertainty.has_relative);
   // In band S is held. rms is near to linear in beta/f0: u is what its differences say.
   Device moved = kPaper;
   const double at_estimate = results.percent_of(results.band.energy_v2s);
@@ -75,6 +77,63 @@ TEST(EvaluationFigures, UncertaintyIsThatOfNormalParameters) {
   const double of_beta = damped.percent_of(damped.band.energy_v2s) - at_estimate;
   EXPECT_NEAR(u_percent, std::hypot(of_f0, of_beta), 0.03 * u_percent);
   EXPECT_NEAR(low, at_estimate - 1.96 * u_percent, 0.1 * u_percent);
+}
+
+// With a gain that is a number an error of S is one in band, and each trial has an S of its own to
+// be in percent of. The figure falls with S here, so that the ends of its interval are what a
+// sensor with an S at the ends of the interval of S has.
+TEST(EvaluationFigures, PercentagesAreOfEachTrialsOwnSensitivity) {
+  Settings settings = quick_settings();
+  settings.trials = 20000;
+  settings.gain_mode = emax::app::GainMode::kFixed;
+  settings.gain = 1.1;
+  constexpr double kU = 0.003;
+  constexpr double kEnd = 1.96;
+  const auto percent = [&](double sensitivity) {
+    const EvaluationResults& results = evaluated({{sensitivity, 4073.0, 0.3182}, {}}, settings);
+    return results.percent_of(results.matched.energy_v2s);
+  };
+  const double low = percent(1.037 + kEnd * kU);
+  const double high = percent(1.037 - kEnd * kU);
+  const Device device = {{1.037, 4073.0, 0.3182}, {kU, 0.0, 0.0}};
+  const EvaluationResults& results = evaluated(device, settings);
+  const emax::app::EnergyUncertainty known = results.matched.uncertainty;
+  ASSERT_TRUE(known.exists());
+  // Of 20000 trials an end is uncertain by 0.019 u (the square root of 0.025 * 0.975 / 20000 over
+  // the density there, 0.058/u); u is a quarter of the interval.
+  const double tolerance = 3.0 * 0.019 * 0.25 * (high - low);
+  EXPECT_NEAR(results.percent_of(known.symmetric_of_percent().low), low, tolerance);
+  EXPECT_NEAR(results.percent_of(known.symmetric_of_percent().high), high, tolerance);
+  EXPECT_LE(results.percent_of(known.shortest_of_percent().high) -
+                results.percent_of(known.shortest_of_percent().low),
+            high - low + 2.0 * tolerance);
+  EXPECT_NEAR(4.0 * known.u_percent, high - low, 0.04 * (high - low));  // 1.96 for 2, and 0.7 %.
+  // The root of E alone has less, about S/G of it: where S is larger, so is what it is in percent
+  // of.
+  EXPECT_LT(results.percent_of(known.symmetric.high) - results.percent_of(known.symmetric.low),
+            0.97 * (high - low));
+}
+
+TEST(EvaluationFigures, RelativeIntervalsAreTheSameFromAStore) {
+  // Polynomials hold over so little of f0 and beta.
+  const Device device = {{1.037, 4073.0, 0.3182}, {0.003, 0.6, 0.00004}};
+  Settings settings = quick_settings();
+  settings.gain_mode = emax::app::GainMode::kFixed;
+  settings.gain = 1.1;
+  const emax::app::EnergyUncertainty plain = evaluated(device, settings).matched.uncertainty;
+  ASSERT_TRUE(plain.has_relative);
+  static std::array<double, 1000> store;
+  const EvaluationResults& stored = evaluated(device, settings, emax::Span<double>(store));
+  EXPECT_EQ(stored.matched.uncertainty.relative_symmetric.low, plain.relative_symmetric.low);
+  EXPECT_EQ(stored.matched.uncertainty.relative_shortest.high, plain.relative_shortest.high);
+  // Where the trials of the procedure are the normal ones, they are the figure's, too.
+  settings.criterion = emax::Criterion::kInBandError;
+  settings.distribution = emax::Distribution::kNormal;
+  const EvaluationResults& once = evaluated(device, settings);
+  ASSERT_TRUE(once.uncertainty.has_relative);
+  // Polynomials hold to 1e-10 of E, or to 1e-6 of u.
+  EXPECT_NEAR(once.uncertainty.relative_symmetric.low / plain.relative_symmetric.low, 1.0, 1e-6);
+  EXPECT_EQ(once.uncertainty.guard.searches, 9U);
 }
 
 TEST(EvaluationFigures, DefaultTrendLeavesOutWhatHasNoRoom) {

@@ -309,13 +309,20 @@ void Evaluation::step_figure_trials() noexcept {
     refuse_uncertainty(result.status);
     return;
   }
-  take_uncertainty(uncertainty());
+  if (part.is_relative) {
+    take_relative(uncertainty());
+  } else {
+    take_uncertainty(uncertainty());
+    work_.guard_.start(result.trials, result.trial_of_maximum, EnergyGuard::kSpreadOfFigure);
+    if (begin_relative()) {
+      return;
+    }
+  }
   if (part.trials.search_settings().method == Method::kPaper) {
     uncertainty().is_done = true;
     work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
     return;
   }
-  work_.guard_.start(result.trials, result.trial_of_maximum, EnergyGuard::kSpreadOfFigure);
   work_.progress_ = 0.0;
   work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kGuard;
 }
@@ -345,6 +352,7 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
   known.u_v2s = result.u;
   known.symmetric = result.symmetric;
   known.shortest = result.shortest;
+  known.has_relative = false;
   // percent_of() of an energy is as sqrt(E) is.
   constexpr double kRounding = 1e-12;
   const double u = sqrt(part.root.squares / static_cast<double>(part.root.count - 1));
@@ -352,21 +360,52 @@ void Evaluation::take_uncertainty(EnergyUncertainty& known) const noexcept {
   known.u_percent = is_rounding ? 0.0 : results_.percent_of(1.0) * u;
 }
 
+/// Whether the trials that run are of an uncertainty whose percentages are of another S in each.
+bool Evaluation::are_relative() const noexcept {
+  return is_of_uncertainty() && results_.settings.gain_mode == GainMode::kFixed &&
+         results_.device.u.sensitivity > 0.0;
+}
+
+/// Whether the trials that run, or have just been run, are those of an uncertainty.
+bool Evaluation::is_of_uncertainty() const noexcept {
+  return results_.stage >= Stage::kBand ||
+         (are_trials_normal() && results_.stage == Stage::kMonteCarlo);
+}
+
+/// @returns Whether the same trials are run once more, for the intervals of E (S/S_t)^2.
+bool Evaluation::begin_relative() noexcept {
+  EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  part.is_relative =
+      are_relative() && part.monte_carlo.start(work_.trials_, results_.settings.probability,
+                                               work_.grid_.store()) == Status::kOk;
+  return part.is_relative;
+}
+
+void Evaluation::take_relative(EnergyUncertainty& known) const noexcept {
+  const MonteCarloResult result = work_.part_.trial.monte_carlo.result();
+  known.relative_symmetric = result.symmetric;
+  known.relative_shortest = result.shortest;
+  known.has_relative = result.status == Status::kOk;
+}
+
+/// @returns The S of a trial that has just been made, or whose energy was taken from the store.
+double Evaluation::sensitivity_of(std::uint32_t trial, bool is_stored) noexcept {
+  EnergyTrials& trials = work_.part_.trial.trials;
+  return is_stored ? trials.device(trial).sensitivity : trials.sensitivity();
+}
+
 /// Takes sqrt(E) over the trial's own S, for that of the estimate, while the first pass runs.
 void Evaluation::note_root(std::uint32_t trial, double energy_v2s, bool is_stored) noexcept {
   EvaluationWorkspace::TrialPart& part = work_.part_.trial;
   EvaluationWorkspace::Scatter& root = part.root;
-  const bool is_wanted = results_.stage >= Stage::kBand ||
-                         (are_trials_normal() && results_.stage == Stage::kMonteCarlo);
-  if (!is_wanted || part.monte_carlo.pass() != 1) {
+  if (!is_of_uncertainty() || part.is_relative || part.monte_carlo.pass() != 1) {
     return;
   }
   const Accelerometer& estimate = results_.device.estimate;
   const bool is_figure = results_.stage == Stage::kBand || results_.stage == Stage::kMatched;
   const bool is_held =
       results_.settings.gain_mode != GainMode::kFixed && (is_figure || holds_sensitivity());
-  const double sensitivity =
-      is_stored && !is_held ? part.trials.device(trial).sensitivity : part.trials.sensitivity();
+  const double sensitivity = sensitivity_of(trial, is_stored && !is_held);
   const double value = sqrt(energy_v2s) * (estimate.sensitivity / sensitivity);
   if (root.count == 0) {
     root.origin = value;

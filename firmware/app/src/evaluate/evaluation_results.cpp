@@ -232,7 +232,7 @@ bool EvaluationResults::is_one_sided(const EnergyUncertainty& known, double ener
   // Without a U some of the trials have no root.
   return !is_finite(known.u_percent) ||
          app::is_one_sided(percent_of(energy), known.expanded_percent(),
-                           interval_percent_of(known.shortest, energy));
+                           interval_percent_of(known.shortest_of_percent(), energy));
 }
 
 double EvaluationResults::rms_error_v() const noexcept {

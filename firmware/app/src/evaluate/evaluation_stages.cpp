@@ -112,9 +112,12 @@ double Evaluation::progress_of_stage() const noexcept {
 
 double Evaluation::progress_of_trials() const noexcept {
   // With a store that holds all trials only the first pass takes time.
-  return work_.store_.size() < work_.trials_
-             ? work_.part_.trial.monte_carlo.progress()
-             : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
+  const EvaluationWorkspace::TrialPart& part = work_.part_.trial;
+  const double of_run =
+      work_.store_.size() < work_.trials_
+          ? part.monte_carlo.progress()
+          : static_cast<double>(work_.stored_) / static_cast<double>(work_.trials_);
+  return are_relative() ? 0.5 * (of_run + (part.is_relative ? 1.0 : 0.0)) : of_run;
 }
 
 // The scatter of a mean over blocks falls with the root of their number: that says how many it
@@ -407,6 +410,10 @@ void Evaluation::run_slice() noexcept {
       }
     }
     note_root(trial, value, is_stored);
+    if (part.is_relative) {
+      const double ratio = results_.device.estimate.sensitivity / sensitivity_of(trial, is_stored);
+      value = ratio * ratio * value;
+    }
     if (adapts) {
       part.adaptive.add(value, part.monte_carlo, store);
     } else {
@@ -448,6 +455,11 @@ void Evaluation::step_monte_carlo() noexcept {
   if (!part.monte_carlo.done()) {
     return;
   }
+  if (part.is_relative) {
+    take_relative(results_.uncertainty);
+    begin_guard();
+    return;
+  }
   results_.trials.take(part.monte_carlo, work_.grid_.store());
   results_.trials.redraws = part.trials.redraws();
   results_.trials.branches = part.trials.notes();
@@ -460,13 +472,19 @@ void Evaluation::step_monte_carlo() noexcept {
     take_uncertainty(results_.uncertainty);
   }
   results_.device_at_maximum = part.trials.device(result.trial_of_maximum);
+  work_.guard_.start(
+      work_.trials_, result.trial_of_maximum,
+      part.trials.has_surface() ? EnergyGuard::kSpreadOfFigure : EnergyGuard::kSpread);
+  if (!begin_relative()) {
+    begin_guard();
+  }
+}
+
+void Evaluation::begin_guard() noexcept {
   if (results_.settings.method == Method::kPaper) {
     end_trials();
     return;
   }
-  work_.guard_.start(
-      work_.trials_, result.trial_of_maximum,
-      part.trials.has_surface() ? EnergyGuard::kSpreadOfFigure : EnergyGuard::kSpread);
   work_.progress_ = 0.0;
   results_.stage = Stage::kGuard;
 }

@@ -128,8 +128,9 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
   const bool has_u = figure.uncertainty.exists();
   const double percent = results.percent_of(figure.energy_v2s);
   const CoverageInterval interval =
-      has_u ? results.interval_percent_of(figure.uncertainty.shortest, figure.energy_v2s)
-            : CoverageInterval{};
+      has_u
+          ? results.interval_percent_of(figure.uncertainty.shortest_of_percent(), figure.energy_v2s)
+          : CoverageInterval{};
   return {name,
           is_marked,
           percent,
@@ -157,7 +158,8 @@ bool write_papers_rows(const EvaluationResults& results, std::uint32_t marked,
     const double percent = results.percent_of(energy);
     const double expanded = known.expanded_percent();
     const CoverageInterval interval =
-        has_u ? results.interval_percent_of(known.shortest, energy) : CoverageInterval{};
+        has_u ? results.interval_percent_of(known.shortest_of_percent(), energy)
+              : CoverageInterval{};
     is_any_one_sided = results.is_one_sided(known, energy);
     write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
                (marked & kRowEnergy) != 0, percent, has_u, expanded, results.has_bound,

@@ -330,7 +330,8 @@ void write_fewer_trials(const EvaluationResults& results, const EnergyUncertaint
 void write_instead_of_u(const EvaluationResults& results, const EnergyUncertainty& known,
                         double energy_v2s, JsonWriter& json) noexcept {
   if (energy_v2s >= 0.0 && results.is_one_sided(known, energy_v2s)) {
-    const CoverageInterval interval = results.interval_percent_of(known.shortest, energy_v2s);
+    const CoverageInterval interval =
+        results.interval_percent_of(known.shortest_of_percent(), energy_v2s);
     json.pair("instead_of_U_percent", interval.low, interval.high);
   } else {
     json.null("instead_of_U_percent");
@@ -355,8 +356,8 @@ void write_figure_uncertainty(const EvaluationResults& results, const FigureResu
   json.pair("shortest", known.shortest.low, known.shortest.high);
   json.number("u_percent", known.u_percent);
   json.number("U_percent", kCoverageFactor * known.u_percent);
-  write_interval_in_percent("interval_percent", results, known.symmetric, json);
-  write_interval_in_percent("shortest_percent", results, known.shortest, json);
+  write_interval_in_percent("interval_percent", results, known.symmetric_of_percent(), json);
+  write_interval_in_percent("shortest_percent", results, known.shortest_of_percent(), json);
   write_instead_of_u(results, known, figure.energy_v2s, json);
   write_disagreements(known.guard, json);
 }

@@ -155,6 +155,7 @@ class Evaluation {
   void step_adaptive() noexcept;
   void begin_monte_carlo(std::uint32_t trials) noexcept;
   void step_monte_carlo() noexcept;
+  void begin_guard() noexcept;
   void step_guard() noexcept;
   void end_trials() noexcept;
   bool begin_next_figure() noexcept;
@@ -168,6 +169,11 @@ class Evaluation {
   void step_figure_trials() noexcept;
   void step_figure_guard() noexcept;
   void take_uncertainty(EnergyUncertainty& known) const noexcept;
+  bool is_of_uncertainty() const noexcept;
+  bool are_relative() const noexcept;
+  bool begin_relative() noexcept;
+  void take_relative(EnergyUncertainty& known) const noexcept;
+  double sensitivity_of(std::uint32_t trial, bool is_stored) noexcept;
   void end_figure_energy(bool is_proven) noexcept;
   void begin_figure_trials() noexcept;
   void refuse_figure(Status status) noexcept;

@@ -93,7 +93,19 @@ struct EnergyUncertainty {
   /// Standard deviation of 100 sqrt(E/T)/(S a), S being each trial's; not a number where a trial's
   /// energy difference is below 0.
   double u_percent = 0.0;
+  /// With a gain that is a number: the intervals of E (S/S_t)^2, S_t being each trial's S, which
+  /// percentages are of. Else E varies with no S, or as the square of it, and has one kind alone.
+  bool has_relative = false;
+  CoverageInterval relative_symmetric;
+  CoverageInterval relative_shortest;
 
+  /// @returns What percentages are made of.
+  const CoverageInterval& symmetric_of_percent() const noexcept {
+    return has_relative ? relative_symmetric : symmetric;
+  }
+  const CoverageInterval& shortest_of_percent() const noexcept {
+    return has_relative ? relative_shortest : shortest;
+  }
   bool exists() const noexcept { return is_done && status == Status::kOk; }
   /// @returns U of that percentage; 0 if there is none.
   double expanded_percent() const noexcept { return exists() ? kCoverageFactor * u_percent : 0.0; }

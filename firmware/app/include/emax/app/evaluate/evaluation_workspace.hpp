@@ -69,7 +69,8 @@ class EvaluationWorkspace {
     EnergyTrials trials;
     MonteCarlo monte_carlo;
     AdaptiveTrials adaptive;
-    Scatter root;  // Of sqrt(E), from the first pass.
+    Scatter root;              // Of sqrt(E), from the first pass.
+    bool is_relative = false;  // The second run, of E (S/S_t)^2.
   };
   union Part {
     constexpr Part() noexcept : trial() {}
