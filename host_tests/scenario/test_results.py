@@ -407,14 +407,15 @@ class FigureValues(ProgramTest):
         # A u(f0) of half of f0; trials with less energy than the filter, whose difference has no root.
         for options, row, is_below in [
                 (["--model", "1,4073,0.3,0,2200,0.25"], r"The paper's figure, sqrt\(E/T\)", False),
-                (["--model", "1,1100,0.5,0.3,300,0.1", "--criterion", "difference", "--gain", "1"],
+                # Without u(S): each trial is in percent of its own S a.
+                (["--model", "1,1000,0.5,0,300,0.1", "--criterion", "difference", "--gain", "1"],
                  r"The energy difference, sqrt\(E/T\)", True)]:
             common = [*options, "--trials", "2000", "--trend", "none"]
             text = self.succeed("report", *common, "--out", "out")
             found = json.loads((self.directory / "out" / "results.json").read_text(encoding="utf-8"))["uncertainty"]
             self.assertIs(found["U_percent"] is None, is_below)
             low, high = (100.0 * math.sqrt(max(end, 0.0) / 0.002) for end in found["shortest"])  # S = a = 1.
-            shown = re.search(row + r" +\* +[\d.]+ +([\d.]+) to ([\d.]+) ", text)
+            shown = re.search(row + r" +(?:\* +)?[\d.]+ +([\d.]+) to ([\d.]+) ", text)
             self.assertTrue(shown, text[:2000])
             for end, given, least in [(low, float(shown[1]), high / 100), (high, float(shown[2]), high / 100)]:
                 self.assertAlmostEqual(given, end, delta=max(least, 1.0))
