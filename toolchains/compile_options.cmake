@@ -39,6 +39,12 @@ target_link_libraries(emax_hosted INTERFACE emax_arithmetic emax_warnings)
 
 include(${CMAKE_CURRENT_LIST_DIR}/sanitizers.cmake)
 
+# Threads count, too.
+if(EMAX_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+
 # emax_add_freestanding_library(<name> <source>...)
 # A static library, also as emax::<name without emax_>, whose public headers are in include/.
 function(emax_add_freestanding_library name)
