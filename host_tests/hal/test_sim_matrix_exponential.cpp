@@ -96,5 +96,13 @@ TEST(MatrixExponential, OfAnInputAsOneMoreState) {
   EXPECT_EQ(matrix[10][10], 1.0);
 }
 
+// No number of halvings makes an infinity small.
+TEST(MatrixExponential, EndsForElementsThatAreNotPermitted) {
+  Matrix matrix = {};
+  matrix[0][0] = std::numeric_limits<double>::infinity();
+  exponentiate_in_place(matrix);
+  EXPECT_FALSE(std::isfinite(matrix[0][0]));
+}
+
 }  // namespace
 }  // namespace emax::sim

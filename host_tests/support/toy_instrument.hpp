@@ -228,6 +228,23 @@ inline void bad_immediate(Toy&, Call& call) noexcept { call.wait(); }
 /// Breaks the rule of commands that are no queries.
 inline void talkative(Toy&, Call& call) noexcept { call.answer().integer(7); }
 
+/// Asks for more parameters than its row has.
+inline void greedy(Toy& toy, Call& call) noexcept {
+  static constexpr const char* kWords[] = {"AUTO", "TRACk"};
+  const app::scpi::NumberRule rule{0.0, 100.0, 0.0, nullptr};
+  double number = 0.0;
+  std::int64_t whole = 0;
+  bool is_on = false;
+  std::size_t word = 0;
+  Span<const char> text;
+  app::scpi::NumberOrWord value{0.0, 0};
+  (void)call.number(rule, number);
+  const bool takes_more = call.number(rule, number) || call.integer({1, 15, 10}, whole) ||
+                          call.boolean(is_on) || call.choice(kWords, word) || call.string(text) ||
+                          call.number_or_word_setting(rule, kWords, value, value);
+  toy.stored += takes_more ? 1 : 0;
+}
+
 using app::scpi::kImmediate;
 using app::scpi::kPlain;
 using app::scpi::kQueryLimits;
@@ -293,6 +310,7 @@ inline constexpr app::scpi::Command<Toy> kCommands[] = {
     {"TEST:FLOod", Forms::kQuery, "", "", kPlain, flood},
     {"TEST:WAIT", Forms::kQuery, "", "", kImmediate, bad_immediate},
     {"TEST:TALK", Forms::kSet, "", "", kImmediate, talkative},
+    {"TEST:GREEdy", Forms::kSet, "<n>", "", kPlain, greedy},
 };
 
 static_assert(app::scpi::first_bad_row(kCommands) == sizeof kCommands / sizeof kCommands[0]);

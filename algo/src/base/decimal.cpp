@@ -75,8 +75,9 @@ void multiply_by_power_of_five(Natural& number, int exponent) noexcept {
   multiply_add(number, kPowers[exponent], 0);
 }
 
+/// A number above 0.
 void shift_left(Natural& number, int bits) noexcept {
-  if (number.size == 0 || bits == 0) {
+  if (bits == 0) {
     return;
   }
   const auto whole = static_cast<std::size_t>(bits) / 32;

@@ -81,7 +81,7 @@ void FloatPhi::fill_table(const PhiOperator& phi, std::size_t begin, std::size_t
               (begin < 2 ? phi.correlation(m) : phi.correlation(m) * power(phi.step(m), begin - 1));
   }
   std::size_t i = begin;
-  if (i == 0 && end != 0) {
+  if (i == 0) {
     edge_ = inverse * phi.endless_diagonal();
     table[0] = static_cast<float>(edge_);
     i = 1;

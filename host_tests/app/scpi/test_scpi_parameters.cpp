@@ -99,13 +99,14 @@ TEST(ScpiNumbers, UnitsAndMultipliers) {
   for (const auto& entry : frequencies) {
     EXPECT_EQ(frequency_of(entry.text), entry.value_hz) << entry.text;
   }
+  EXPECT_EQ(error_of("CALC:ENER:TIME 3 MHZ"), -131);
   ToyConsole console;
   EXPECT_EQ(console.ask("SOUR:LEV 3 M/S2;LEV?\n"), "3\n");
   EXPECT_EQ(console.ask("SOUR:LEV 4000 MM/S2;LEV?\n"), "4\n");
   // The quotient as a product.
   EXPECT_EQ(console.ask("SOUR:LEV 3M.S-2;LEV?;LEV 5 m.s-2;LEV?;LEV 6000 MM.S-2;LEV?\n"), "3;5;6\n");
-  for (const char* unit :
-       {"M.S2", "M.S-1", "M.S", "M/S-2", "M.S-22", "M", ".S-2", "S-2.M", "M/S^2"}) {
+  for (const char* unit : {"M.S2", "M.S-1", "M.S", "M/S-2", "M.K-2", "M.S+2", "M.S-22", "M", ".S-2",
+                           "S-2.M", "M/S^2"}) {
     EXPECT_EQ(error_of(console, std::string("SOUR:LEV 3 ") + unit), unit[0] == '.' ? -103 : -131)
         << unit;
   }

@@ -128,6 +128,11 @@ TEST(ScpiSession, HandlersThatBreakTheRules) {
             ";-310,\"System error;the answer is too long\"\n");
   console.toy.is_busy = false;
   EXPECT_EQ(console.ask(""), "1\n");
+  EXPECT_EQ(console.ask("TEST:GREE 5;*ESE?\nSYST:ERR:COUN?\n"), "6\n");
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(console.error(), "-109,\"Missing parameter\"\n") << i;
+  }
+  EXPECT_EQ(console.toy.stored, 0);
 }
 
 TEST(ScpiSession, LongAnswers) {

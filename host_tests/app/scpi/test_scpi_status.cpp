@@ -252,6 +252,14 @@ TEST(ScpiStatusModel, Clear) {
   EXPECT_TRUE(status.consistent());
 }
 
+// SCPI-99, 21.8.2: 0 is no error.
+TEST(ScpiStatusModel, NoErrorIsNotReported) {
+  StatusModel status;
+  status.report(ErrorCode::kNoError, Span<const char>("all well", 8));
+  EXPECT_TRUE(status.errors().empty());
+  EXPECT_EQ(status.events(), 0);
+}
+
 // -350 is a device-dependent error itself.
 TEST(ScpiStatusModel, OverflowSetsItsEvent) {
   StatusModel status;

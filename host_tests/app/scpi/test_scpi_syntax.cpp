@@ -29,7 +29,7 @@ TEST(ScpiPattern, ShortAndLongForm) {
   }
   for (const char* header :
        {"CALCU:FILT:ORD", "CALC:FILT:ORDE", "CALC:FILT", "CALC:FILT:ORD:X", "CAL:FILT:ORD", "CALC",
-        "FILT:ORD", "CALC:ORD", "CALC:FILT:ORDE1", "CAL1:FILT:ORD"}) {
+        "FILT:ORD", "CALC:ORD", "CALC:FILT:ORDE1", "CAL1:FILT:ORD", "CALC:12:ORD"}) {
     EXPECT_EQ(match("CALCulate:FILTer:ORDer", header), HeaderMatch::kNo) << header;
   }
 }

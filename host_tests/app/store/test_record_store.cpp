@@ -352,10 +352,18 @@ class CorrectingStore final : public hal::Store {
   CorrectingStore() : Store(kFormat) {}
 
   void damage(std::uint32_t slot) { unreadable_[slot] = true; }
+  /// After so many reads that succeed, one fails.
+  void fail_read_after(int reads) { reads_left_ = reads; }
+  /// The slot of the read that failed; none yet: the number of slots.
+  std::uint32_t failed_slot() const { return failed_slot_; }
 
  private:
   Status do_read(std::uint32_t slot, std::uint32_t offset,
                  Span<std::uint8_t> bytes) noexcept override {
+    if (reads_left_-- == 0) {
+      failed_slot_ = slot;
+      return Status::kHardwareFault;
+    }
     if (unreadable_[slot]) {
       return Status::kHardwareFault;
     }
@@ -375,6 +383,8 @@ class CorrectingStore final : public hal::Store {
 
   std::array<std::array<std::uint8_t, 64>, 6> memory_ = {};
   std::array<bool, 6> unreadable_ = {};
+  int reads_left_ = -1;
+  std::uint32_t failed_slot_ = 6;
 };
 
 TEST(RecordStore, ACopyThatCannotBeReadIsLikeNone) {
@@ -396,6 +406,35 @@ TEST(RecordStore, ACopyThatCannotBeReadIsLikeNone) {
   EXPECT_EQ(read(memory, 0), Bytes(1, static_cast<std::uint8_t>(Status::kHardwareFault)));
   ASSERT_EQ(write(memory, 0, pattern(8, 3)), Status::kOk);
   EXPECT_EQ(read(memory, 0), pattern(8, 3));
+}
+
+// The older record or a fault where the newer one is not read to its end; never a part of it.
+TEST(RecordStore, AnyOneReadMayFail) {
+  const Bytes fault(1, static_cast<std::uint8_t>(Status::kHardwareFault));
+  std::array<int, 3> found = {};
+  for (int reads = 0;; ++reads) {
+    CorrectingStore memory;
+    ASSERT_EQ(write(memory, 0, pattern(8, 1)), Status::kOk);
+    ASSERT_EQ(write(memory, 0, pattern(8, 2)), Status::kOk);
+    CorrectingStore older;
+    ASSERT_EQ(write(older, 0, pattern(8, 1)), Status::kOk);
+    older.damage(1);
+    const bool is_second_newest = read(older, 0) == pattern(8, 1);
+    memory.fail_read_after(reads);
+    const Bytes result = read(memory, 0);
+    if (memory.failed_slot() == 6) {
+      EXPECT_EQ(result, pattern(8, 2));
+      break;
+    }
+    const bool is_newest = memory.failed_slot() == (is_second_newest ? 1U : 0U);
+    EXPECT_TRUE(is_newest ? result == pattern(8, 1) || result == fault : result == pattern(8, 2))
+        << reads;
+    found[0] += result == pattern(8, 1) ? 1 : 0;
+    found[1] += result == pattern(8, 2) ? 1 : 0;
+    found[2] += result == fault ? 1 : 0;
+  }
+  // Of each copy its head, its bytes and its checksum, and the newest one's bytes once more.
+  EXPECT_EQ(found, (std::array<int, 3>{3, 3, 1}));
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ void take_digits(Cursor& cursor, bool is_fraction, Digits& digits) noexcept {
   }
 }
 
-/// An exponent that is too large is answered as kMaxExponent + 1.
+/// An exponent that is too large, of either sign, is answered as kMaxExponent + 1.
 std::int32_t take_exponent_digits(Cursor& cursor) noexcept {
   const bool is_negative = cursor.take_minus();
   std::int32_t exponent = 0;
@@ -258,7 +258,7 @@ NumberText read_decimal(Span<const char> text, const char* unit) noexcept {
     return {0.0, ErrorCode::kTooManyDigits};
   }
   const std::int32_t exponent = take_exponent(cursor);
-  if (exponent < -kMaxExponent || exponent > kMaxExponent) {
+  if (exponent > kMaxExponent) {
     return {0.0, ErrorCode::kExponentTooLarge};
   }
   Scale scale;
