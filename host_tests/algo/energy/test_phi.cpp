@@ -259,6 +259,8 @@ TEST(PhiBuffer, RefusesWhatItCannotHoldAndStaysAsItWas) {
   EXPECT_EQ(phi.fill(paper_model(), 2e-3, 0), Status::kInvalidArgument);
   EXPECT_EQ(phi.fill(paper_model(), 0.0, 8), Status::kInvalidArgument);
   EXPECT_EQ(phi.fill(paper_model(), nan, 8), Status::kInvalidArgument);
+  EXPECT_EQ(phi.fill(paper_model(), std::numeric_limits<double>::infinity(), 8),
+            Status::kInvalidArgument);
   EXPECT_EQ(phi.matrix().cells(), 8u);
   EXPECT_EQ(phi.matrix().at(3, 5), before);
   const ModalModel model = paper_model();

@@ -148,6 +148,7 @@ TEST(SwitchingSignal, RefusesWhatItCannotHoldAndStaysAsItWas) {
   };
   EXPECT_EQ(set({}, 0.0), Status::kInvalidArgument);
   EXPECT_EQ(set({}, nan), Status::kInvalidArgument);
+  EXPECT_EQ(set({}, std::numeric_limits<double>::infinity()), Status::kInvalidArgument);
   EXPECT_EQ(set({0.0}, 1.0), Status::kInvalidArgument);
   EXPECT_EQ(set({1.0}, 1.0), Status::kInvalidArgument);
   EXPECT_EQ(set({nan}, 1.0), Status::kInvalidArgument);

@@ -136,4 +136,34 @@ TEST(FitDiagnosis, ASecondResonanceHasNoneOfTheseNames) {
   EXPECT_GT(found.reduced_before, 3.0);
 }
 
+// Two points, one of unknown phase among others, and points that no fit explains.
+TEST(FitDiagnosis, NothingIsSaidOfPointsThatDetermineNothing) {
+  const auto workspace = std::make_unique<DiagnosisWorkspace>();
+  const auto cause_of = [&](std::initializer_list<ResponsePoint> points) {
+    FrequencyResponse response;
+    for (const ResponsePoint& point : points) {
+      EXPECT_EQ(response.add(point), Status::kOk);
+    }
+    Wlsp fit;
+    (void)fit.fit(response);
+    const FitDiagnosis diagnosis = diagnose(fit, *workspace);
+    EXPECT_EQ(diagnosis.reduced_before, 0.0);
+    return diagnosis.cause;
+  };
+  const auto point = [](double frequency_hz, double u_phase_rad) {
+    ResponsePoint p;
+    p.frequency_hz = frequency_hz;
+    p.amplitude = 1.0 + 1e-3 * frequency_hz;  // Of no device.
+    p.u_amplitude = 1e-5;
+    p.u_phase_rad = u_phase_rad;
+    return p;
+  };
+  EXPECT_EQ(cause_of({point(100.0, 1e-5), point(200.0, 1e-5)}), FitCause::kNone);
+  EXPECT_EQ(cause_of({point(100.0, 1e-5), point(200.0, emax::kUnknownPhase_rad), point(300.0, 1e-5),
+                      point(400.0, 1e-5)}),
+            FitCause::kNone);
+  EXPECT_EQ(cause_of({point(100.0, 1e-5), point(100.0 + 1e-12, 1e-5), point(100.0 + 2e-12, 1e-5)}),
+            FitCause::kNone);
+}
+
 }  // namespace

@@ -314,4 +314,63 @@ TEST(Judgement, ADampingThatIsNegativeIsNoDevice) {
   EXPECT_EQ(judge(fit.result()).determined, Determined::kNothing);
 }
 
+// What a fit may answer besides, by hand.
+TEST(Judgement, WithoutPositiveEstimatesThereIsNoDevice) {
+  WlspFit good;
+  good.model = {0.5, 1000.0, 0.3};
+  good.u_sensitivity = 0.01;
+  good.u_damping = 0.01;
+  good.mu[0] = 2.0;
+  good.mu[2] = 3.0;
+  ASSERT_EQ(judge(good).determined, Determined::kAll) << "exact numbers are as good";
+  good.u_mu[0] = good.u_mu[2] = 0.01;
+  ASSERT_EQ(judge(good).determined, Determined::kAll);
+  const auto determined = [&good](auto change) {
+    WlspFit fit = good;
+    change(fit);
+    return judge(fit).determined;
+  };
+  for (const Status status :
+       {Status::kNotIdentifiable, Status::kTooFewPoints, Status::kOverdamped}) {
+    EXPECT_EQ(determined([&](WlspFit& fit) { fit.status = status; }), Determined::kNothing);
+  }
+  for (const double bad : {0.0, -2.0, std::nan("")}) {
+    EXPECT_EQ(determined([&](WlspFit& fit) { fit.mu[0] = bad; }), Determined::kNothing) << bad;
+    EXPECT_EQ(determined([&](WlspFit& fit) { fit.u_sensitivity = bad; }), Determined::kNothing);
+  }
+  for (const double bad : {-3.0, std::nan("")}) {
+    EXPECT_EQ(determined([&](WlspFit& fit) { fit.mu[2] = bad; }), Determined::kNothing) << bad;
+  }
+  EXPECT_EQ(determined([](WlspFit& fit) { fit.mu[2] = -0.01; }), Determined::kSensitivity);
+}
+
+// beta^2 + 2 u ends the range, cut at what is below 1; a negative beta^2 counts as none.
+TEST(Judgement, RangeOfDampingsByMagnitudes) {
+  WlspFit fit;
+  fit.model = {0.5, 1000.0, 0.01};
+  fit.u_sensitivity = 0.01;
+  fit.mu[0] = 2.0;
+  fit.mu[2] = 3.0;
+  fit.is_damping_held = true;
+  const struct {
+    double damping2;
+    double u_damping2;
+    double high;
+  } ranges[] = {{0.01, 0.04, 0.3}, {-0.5, 0.02, 0.2}, {0.9, 0.5, 0.999}};
+  for (const auto& range : ranges) {
+    fit.damping2 = range.damping2;
+    fit.u_damping2 = range.u_damping2;
+    EXPECT_EQ(judge(fit).determined, Determined::kAllButDamping);
+    EXPECT_NEAR(judge(fit).damping_high, range.high, 1e-15) << range.damping2;
+  }
+}
+
+TEST(Magnitudes, TwoAreTooFew) {
+  Points given;
+  given.count = 2;
+  EXPECT_FALSE(fit_magnitudes(response_of(given)).is_found);
+  given.count = 3;
+  EXPECT_TRUE(fit_magnitudes(response_of(given)).is_found);
+}
+
 }  // namespace

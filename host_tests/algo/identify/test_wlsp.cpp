@@ -1079,8 +1079,10 @@ TEST(Wlsp, TheClockIsAnErrorOfTheFrequencyAlone) {
   EXPECT_EQ(fit.result().u_damping, before.u_damping);
   EXPECT_NEAR(fit.result().u_natural_frequency_hz,
               std::hypot(before.u_natural_frequency_hz, 4073.0 * 25e-6), 1e-9);
-  shared.clock = -1.0;
-  EXPECT_EQ(response.set_shared(shared), Status::kInvalidArgument);
+  for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    shared.clock = bad;
+    EXPECT_EQ(response.set_shared(shared), Status::kInvalidArgument) << bad;
+  }
   EXPECT_EQ(response.shared().clock, 25e-6);
 }
 

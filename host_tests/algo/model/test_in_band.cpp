@@ -144,6 +144,23 @@ TEST(InBandError, ADelayLeavesOpenWhatTheContinuedFilterHasBeforeItsStart) {
   EXPECT_NEAR(std::fabs(found) / leading, 1.0, 0.01);
 }
 
+// The band ends at 1000 Hz. At order 10 nothing passes at 20 kHz; at order 1 a twentieth does, of a
+// resonance of 50.
+TEST(InBandError, AGridResolvesTheBandAndAResonanceThatShows) {
+  const struct {
+    double natural_frequency_hz;
+    double damping;
+    int order;
+    double expected_hz;
+  } grids[] = {{500.0, 0.3, 10, 1000.0}, {3000.0, 0.3, 10, 3000.0}, {20e3, 0.5, 10, 4000.0},
+               {100e3, 0.5, 10, 6250.0}, {20e3, 0.01, 10, 4000.0},  {20e3, 0.01, 1, 20e3}};
+  for (const auto& grid : grids) {
+    const ModalModel model =
+        model_of({1.0, grid.natural_frequency_hz, grid.damping}, {grid.order, 1000.0, 1.0}, kPlain);
+    EXPECT_DOUBLE_EQ(model.grid_hz(), grid.expected_hz) << grid.natural_frequency_hz;
+  }
+}
+
 TEST(InBandError, SaysWhatItDoesNotTakeAndStaysAsItWas) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   ModalModel model = model_of(kPaperDevice, kPaperFilter, kPlain);
@@ -163,6 +180,9 @@ TEST(InBandError, SaysWhatItDoesNotTakeAndStaysAsItWas) {
   EXPECT_EQ(model.set_ideal(0.0, filter, Criterion::kIntegralSquareError),
             Status::kInvalidArgument);
   EXPECT_EQ(model.set_ideal(nan, filter, Criterion::kInBandError), Status::kInvalidArgument);
+  EXPECT_EQ(model.set_ideal(HUGE_VAL, filter, Criterion::kInBandError), Status::kInvalidArgument);
+  EXPECT_EQ(model.set_ideal(1.0, butterworth({10, 1000.0, 0.0}), Criterion::kInBandError),
+            Status::kInvalidArgument);
   EXPECT_EQ(model.impulse_response(1e-4), before);
   EXPECT_EQ(model.set(kPaperDevice, filter, with_delay(1.59e-4)), Status::kOk);
 }

@@ -26,6 +26,8 @@ TEST(ModalModel, ImpulseResponseMeetsTheKnownNumbers) {
   EXPECT_NEAR(model.impulse_response(1000e-6), -1744.33268, 0.5e-5);
   EXPECT_NEAR(model.impulse_response(2000e-6), 424.175752, 0.5e-6);
   EXPECT_EQ(model.impulse_response(-1e-9), 0.0);
+  EXPECT_EQ(model.device_impulse_response(-1e-9), 0.0);
+  EXPECT_EQ(model.filter_impulse_response(-1e-9), 0.0);
 }
 
 TEST(ModalModel, PeakAndSettlingTimeMeetTheKnownNumbers) {
@@ -149,6 +151,7 @@ TEST(ModalModel, ARefusedArgumentChangesNothing) {
   EXPECT_EQ(model.set(kPaperDevice, {16, 1000.0, 1.0}, kIse), Status::kInvalidOrder);
   EXPECT_EQ(model.set_device({-1.0, 1000.0, 0.5}), Status::kInvalidArgument);
   EXPECT_EQ(model.set_gain(-1.0), Status::kInvalidArgument);
+  EXPECT_EQ(model.set_gain(HUGE_VAL), Status::kInvalidArgument);
   EXPECT_EQ(model.impulse_response(1e-4), before);
   EXPECT_EQ(model.filter().relative_degree, 10);
 }

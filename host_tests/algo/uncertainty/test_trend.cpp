@@ -67,6 +67,34 @@ TEST(Trend, Falling) {
   EXPECT_GE(linear_trend(time_s, energy).correlation, -1.0);
 }
 
+// Rounding alone would put some of these a digit above 1.
+TEST(Trend, ExactLinesHaveACorrelationOfAtMostOne) {
+  for (int i = 1; i < 400; ++i) {
+    const double slope = 0.37 * i;
+    const double time_s[] = {0.1, 0.2, 0.3 + 0.01 * i, 0.7 + 0.03 * i};
+    double rising[4];
+    double falling[4];
+    for (int k = 0; k < 4; ++k) {
+      rising[k] = slope * time_s[k];
+      falling[k] = -slope * time_s[k];
+    }
+    EXPECT_LE(linear_trend(time_s, rising).correlation, 1.0) << i;
+    EXPECT_NEAR(linear_trend(time_s, rising).correlation, 1.0, 1e-15) << i;
+    EXPECT_GE(linear_trend(time_s, falling).correlation, -1.0) << i;
+    EXPECT_NEAR(linear_trend(time_s, falling).correlation, -1.0, 1e-15) << i;
+  }
+}
+
+// Finite numbers of which the line or its scatter is not.
+TEST(Trend, NumbersOutOfTheRangeOfDouble) {
+  const double near_zero_s[] = {0.0, 1.0, 2.0};
+  const double squares_too_large[] = {0.0, 1e200, 2e200};
+  EXPECT_EQ(linear_trend(near_zero_s, squares_too_large).status, Status::kInvalidArgument);
+  const double far_away_s[] = {1e10, 1e10 + 1.0, 1e10 + 2.0};
+  const double steep[] = {0.0, 1e300, 2e300};
+  EXPECT_EQ(linear_trend(far_away_s, steep).status, Status::kInvalidArgument);
+}
+
 TEST(Trend, BadInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -61,6 +61,11 @@ TEST(SelfTest, FindsWrongText) {
   expect_found(&SelfTestTables::decimal, [](DecimalCheck& check) { check.printed = "1"; });
   expect_found(&SelfTestTables::decimal, [](DecimalCheck& check) { check.text = "x"; });
   expect_found(&SelfTestTables::decimal, [](DecimalCheck& check) { check.text = "1.5"; });
+  std::string longer;
+  expect_found(&SelfTestTables::decimal, [&longer](DecimalCheck& check) {
+    longer = check.text + std::string("x");
+    check.text = longer.c_str();
+  });
   std::string printed;
   expect_found(&SelfTestTables::decimal, [&printed](DecimalCheck& check) {
     printed = check.printed;
@@ -80,6 +85,7 @@ TEST(SelfTest, FindsWrongDigits) {
 
 TEST(SelfTest, FindsOtherSignal) {
   expect_found(&SelfTestTables::energy, [](EnergyCheck& check) { check.duration_s *= 1.01; });
+  expect_found(&SelfTestTables::energy, [](EnergyCheck& check) { check.duration_s = -1.0; });
 }
 
 TEST(SelfTest, AnswersTheNumberOfTheFirstOne) {

@@ -136,6 +136,27 @@ TEST(SettingField, SameMeansTheSameValueInUse) {
   EXPECT_FALSE(is_same(field("order"), &before, &after));
 }
 
+// Memory that is damaged may say so; nothing behind the end of a list is read.
+TEST(SettingField, AListLongerThanItsRoomIsTheSameAsNone) {
+  Settings settings = kDefaultSettings;
+  const SettingField& trend = field("trend");
+  settings.trend_count = trend.last;
+  EXPECT_TRUE(is_same(trend, &settings, &settings));
+  settings.trend_count = trend.last + 1;
+  EXPECT_FALSE(is_same(trend, &settings, &settings));
+}
+
+TEST(SweepSettings, ListsLongerThanTheirRoomAreRefused) {
+  const emax::hal::StreamFormat format = {1e5, 10.0, 10.0, 64, 37};
+  SweepSettings settings = default_sweep_settings();
+  ASSERT_EQ(check(settings, format).setting, nullptr);
+  settings.frequency_count = emax::kMaxPoints + 1;
+  EXPECT_STREQ(check(settings, format).setting, "sweep frequencies");
+  settings = default_sweep_settings();
+  settings.reference.count = emax::app::kMaxReferencePoints + 1;
+  EXPECT_STREQ(check(settings, format).setting, "reference table");
+}
+
 /// A change, and whether energy, random numbers, trials and trend are the same after it.
 struct Effect {
   const char* what;
