@@ -206,6 +206,28 @@ TEST_F(Loopback, EndsAtOnceOnRequest) {
   EXPECT_FALSE(bench_.running());
 }
 
+TEST_F(Loopback, ARunThatIsOverLeavesTheStreamAlone) {
+  static app::LoopbackRun run;
+  const app::SweepSettings settings = app::default_sweep_settings();
+  ASSERT_EQ(bench_.configure({}), Status::kOk);
+  ASSERT_EQ(bench_.start({1, 1}), Status::kOk);
+  EXPECT_EQ(run.start(bench_, settings), Status::kAlreadyRunning) << "somebody else's stream";
+  bench_.stop();
+  ASSERT_EQ(run.start(bench_, settings), Status::kOk);
+  EXPECT_FALSE(run.done());
+  EXPECT_EQ(run.progress(), 0.0);
+  run.step(bench_);
+  run.stop(bench_);
+  EXPECT_TRUE(run.done());
+  EXPECT_EQ(run.status(), Status::kStopped);
+  EXPECT_EQ(run.progress(), 1.0);
+  ASSERT_EQ(bench_.start({1, 1}), Status::kOk);
+  const std::uint64_t frames = bench_.clock_frames();
+  run.step(bench_);
+  EXPECT_EQ(bench_.clock_frames(), frames);
+  bench_.stop();
+}
+
 class InstrumentLoopback : public Loopback {};
 
 // Loopback, corrections, sweep: the device is found although the channels are 3 % and 3 us apart.
