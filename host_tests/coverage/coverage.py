@@ -1,7 +1,7 @@
 """Says which lines and branches of the product the tests of the PC run, and keeps the table of it in host_tests/README.md.
 
-usage: coverage.py [--run] [--write | --check] [--tree TREE] [--gcov GCOV] [--ctest CTEST] [--tests EXPRESSION]
-                   [--leave-out EXPRESSION] [--left FILE]
+usage: coverage.py [--run] [--write | --check] [--tree TREE] [--gcov GCOV] [--ctest CTEST] [--jobs N]
+                   [--tests EXPRESSION] [--leave-out EXPRESSION] [--left FILE]
 
 TREE is a tree of the preset `coverage`, already built. --run sets its counts to zero and runs the tests; without it, the
 counts are those of the last run. Prints a table of the areas, and writes each branch that never ran to FILE
@@ -126,10 +126,10 @@ def table_of(result: Result) -> str:
     return f"{markdown(totals)}\n\n{markdown(files)}"
 
 
-def run_tests(ctest: str, tree: Path, tests: str, left_out: str) -> bool:
+def run_tests(ctest: str, tree: Path, jobs: int, tests: str, left_out: str) -> bool:
     for file in tree.rglob("*.gcda"):
         file.unlink()
-    command = [ctest, "--test-dir", str(tree), "--output-on-failure", "--progress", "-R", tests or ".", "-E", left_out]
+    command = [ctest, "--test-dir", str(tree), "--output-on-failure", "--progress", f"-j{jobs}", "-R", tests or ".", "-E", left_out]
     return subprocess.run(command, check=False).returncode == 0
 
 
@@ -152,13 +152,16 @@ def main() -> int:
     parser.add_argument("--tree", type=Path, default=ROOT / "build" / "coverage")
     parser.add_argument("--gcov", default="gcov", help="of the compiler's release")
     parser.add_argument("--ctest", default="ctest")
+    parser.add_argument("--jobs", type=int, default=2, help="tests at a time, %(default)s")
     parser.add_argument("--tests", default="", help="only tests whose names have this expression in them")
     parser.add_argument("--leave-out", default=LONG, help="but not these; default: %(default)s")
     parser.add_argument("--left", type=Path)
     arguments = parser.parse_args()
 
     tree = arguments.tree.resolve()
-    passed = not arguments.run or run_tests(arguments.ctest, tree, arguments.tests, arguments.leave_out)
+    passed = not arguments.run or run_tests(
+        arguments.ctest, tree, arguments.jobs, arguments.tests, arguments.leave_out
+    )
     sources = counts_of_tree(arguments.gcov, tree, ROOT)
     if not any(path.startswith(f"{area}/") for path in sources for area in AREAS):
         sys.exit(f"{tree}: nothing has been counted; build it with the preset `coverage`")

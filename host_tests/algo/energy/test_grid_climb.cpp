@@ -37,11 +37,15 @@ Climbed climb_from(const test::SignPattern& start, const ModalModel& model, doub
   Climbed result;
   const double shift = ascent_shift(model, duration_s / static_cast<double>(cells));
   result.climb.start(static_cast<float>(shift / phi.scale()));
+  const auto step = [&] {
+    return result.climb.step(phi, Span<const float>(table.data(), cells),
+                             Span<const float>(pulses.data(), pulses.size()), start.view(),
+                             applied.view(), Span<float>(product.data(), cells));
+  };
   while (!result.climb.done()) {
-    result.climb.step(phi, Span<const float>(table.data(), cells),
-                      Span<const float>(pulses.data(), pulses.size()), start.view(), applied.view(),
-                      Span<float>(product.data(), cells));
+    (void)step();
   }
+  EXPECT_EQ(step(), 0U) << "nothing is left to do";
   result.product.resize(cells);
   exact.multiply(start.view(), Span<double>(result.product.data(), cells));
   result.energy = dot(start.view(), Span<const double>(result.product.data(), cells));

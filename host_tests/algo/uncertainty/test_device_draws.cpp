@@ -160,6 +160,27 @@ TEST(DeviceDraws, KnowsWhichUnitsMoveTheDevice) {
   EXPECT_TRUE(draws.moves(0, true));  // By f0, which goes with S.
 }
 
+// S and f0 with a correlation of 1, and both the same with the damping.
+TEST(DeviceDraws, ParametersThatGoTogetherAreDrawnTogether) {
+  DrawSettings settings = normal(0.003, 6.0, 0.0004);
+  settings.covariance[0][1] = settings.covariance[1][0] = 0.003 * 6.0;
+  settings.covariance[0][2] = settings.covariance[2][0] = 0.5 * 0.003 * 0.0004;
+  settings.covariance[1][2] = settings.covariance[2][1] = 0.5 * 6.0 * 0.0004;
+  DeviceDraws draws{};
+  ASSERT_EQ(draws.start(kPaperDevice, settings), Status::kOk);
+  for (std::uint32_t t = 0; t < 50; ++t) {
+    ASSERT_TRUE(draws.draw(t));
+    const Accelerometer device = draws.device();
+    const double s = (device.sensitivity - kPaperDevice.sensitivity) / 0.003;
+    const double f0 = (device.natural_frequency_hz - kPaperDevice.natural_frequency_hz) / 6.0;
+    EXPECT_NEAR(f0, s, 1e-9) << t;  // Rounding of S and f0 in their standard deviations.
+    EXPECT_NEAR(draws.device_at(draws.place_of(device)).natural_frequency_hz,
+                device.natural_frequency_hz, 1e-9);
+  }
+  settings.covariance[1][2] = settings.covariance[2][1] = 0.4 * 6.0 * 0.0004;
+  EXPECT_EQ(draws.start(kPaperDevice, settings), Status::kInvalidArgument) << "cannot be";
+}
+
 TEST(DeviceDraws, RefusalLeavesTheDrawsAsTheyWere) {
   DeviceDraws draws{};
   ASSERT_EQ(draws.start(kPaperDevice, box(0.003, 6.0, 0.0004)), Status::kOk);
@@ -169,6 +190,18 @@ TEST(DeviceDraws, RefusalLeavesTheDrawsAsTheyWere) {
   EXPECT_EQ(draws.start(kPaperDevice, box(0.003, 6.0, 0.7)), Status::kInvalidArgument);
   EXPECT_EQ(draws.start({1.0, 4000.0, 0.9}, box(0.003, 6.0, 0.2)), Status::kOverdamped);
   EXPECT_EQ(draws.start(kPaperDevice, normal(0.003, 6.0, std::nan(""))), Status::kInvalidArgument);
+  EXPECT_EQ(draws.start({0.0, 4000.0, 0.3}, box(0.0, 6.0, 0.0004)), Status::kInvalidArgument);
+  for (const double bad : {-6.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_EQ(draws.start(kPaperDevice, box(0.003, bad, 0.0004)), Status::kInvalidArgument) << bad;
+  }
+  DrawSettings settings = normal(0.003, 6.0, 0.0004);
+  settings.covariance[0][1] = 0.5 * 0.003 * 6.0;
+  EXPECT_EQ(draws.start(kPaperDevice, settings), Status::kInvalidArgument) << "not symmetrical";
+  settings.covariance[0][1] = settings.covariance[1][0] = 1.5 * 0.003 * 6.0;
+  EXPECT_EQ(draws.start(kPaperDevice, settings), Status::kInvalidArgument) << "correlation of 1.5";
+  settings = normal(0.0, 6.0, 0.0004);
+  settings.covariance[0][1] = settings.covariance[1][0] = 0.001;
+  EXPECT_EQ(draws.start(kPaperDevice, settings), Status::kInvalidArgument) << "of a constant";
   ASSERT_TRUE(draws.draw(3));
   EXPECT_EQ(draws.sensitivity(), before);
 }
