@@ -128,6 +128,17 @@ TEST(KernelBounds, RefuseWhatTheyDoNotHoldFor) {
   ASSERT_EQ(ideal.set_ideal(1.0, butterworth({4, 1000.0, 1.0}), Criterion::kIntegralSquareError),
             Status::kOk);
   EXPECT_EQ(bounds.start(ideal, 1e-3, memory), Status::kInvalidArgument);
+  ModalModel nothing{};
+  const Accelerometer filter_as_sensor = {0.1, 1000.0, 0.7071067811865476};
+  ASSERT_EQ(nothing.set(filter_as_sensor, {2, 1000.0, 0.1}, Criterion::kIntegralSquareError),
+            Status::kOk);
+  ASSERT_TRUE(nothing.is_nothing());
+  EXPECT_EQ(bounds.start(nothing, 1e-3, memory), Status::kInvalidArgument);
+  ModalModel moved{};
+  ASSERT_EQ(moved.set(filter_as_sensor, {2, 1000.0, 0.1}, Criterion::kInBandError), Status::kOk);
+  ASSERT_GT(moved.moved_by(), 0.0);
+  EXPECT_EQ(bounds.start(moved, 1e-3, memory), Status::kInvalidArgument);
+  EXPECT_EQ(bounds.start(paper_model(), std::nan(""), memory), Status::kInvalidArgument);
   EXPECT_EQ(bounds.start(paper_model(), 0.0, memory), Status::kInvalidArgument);
   EXPECT_EQ(bounds.start(paper_model(), 10.0, memory), Status::kTooManyCells);
   EXPECT_EQ(bounds.start(paper_model(), 1e-3, memory.first(100)), Status::kBufferTooSmall);
