@@ -39,10 +39,11 @@ target_link_libraries(emax_hosted INTERFACE emax_arithmetic emax_warnings)
 
 include(${CMAKE_CURRENT_LIST_DIR}/sanitizers.cmake)
 
-# Threads count, too. Without exceptions there are no branches that only an exception would take; a file that catches
-# one needs them, and gcov marks those branches of it.
+# Functions count before they are inlined, so that each has its branches once, and a choice between two values is a
+# branch. Without exceptions there are no branches that only an exception would take; a file that catches one needs
+# them, and gcov marks those branches of it.
 if(EMAX_COVERAGE)
-  add_compile_options(--coverage -fprofile-update=atomic -fno-exceptions)
+  add_compile_options(--coverage -fno-early-inlining -fno-ssa-phiopt -fno-exceptions)
   add_link_options(--coverage)
 endif()
 
