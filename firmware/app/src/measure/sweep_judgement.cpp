@@ -498,7 +498,9 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   const double of_device = distortion_of(device.fit.residual_std_v,
                                          results_.inputs.silent_device.noise_v, device_v, samples);
   // A drive of few steps is no good sine; its point is flagged.
-  const double most = is_level_little() ? 2.0 * kDistortedShare : kDistortedShare;
+  // Rounding to few steps has harmonics, too.
+  const bool is_of_steps = work_.drive_.amplitude_v() < kManySteps * few_steps_v();
+  const double most = is_level_little() || is_of_steps ? 2.0 * kDistortedShare : kDistortedShare;
   if (reference.distortion > most || of_device > most) {
     return Status::kDistorted;
   }
