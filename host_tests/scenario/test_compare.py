@@ -302,26 +302,60 @@ class CompareInBand(Comparing, ProgramTest):
         self.compare(files[1], files[1] | {"labels": {}}, by="matched")
         self.assertIn("SIMULATION: no result was measured", self.succeed("compare", "0.json", "1.json"))
 
-    def test_damping_that_the_points_leave_open(self):
-        open_one = result(2e-3, None, matched=1.0, u_band=None, bound=2.1e-3, device="open") | {
-            "fit": {"determined": "all but beta", "E_range": [1e-3, 9e-3]},
-            "warnings": [{"about": "damping", "text": "the points do not determine beta"}]}
-        open_one["band"]["matched"]["bound_percent"] = 1.01
+    def test_open_damping_without_a_range(self):
+        """It has the place of its figure, and none of the others is told apart from it."""
         for by in ["matched", "energy"]:
-            found = self.compare(open_one, result(5e-3, matched=3.0, device="good"),
+            found = self.compare(open_one(1.0), result(5e-3, matched=3.0, device="good"),
                                  result(9.5e-3, matched=9.0, device="poor"), by=by)
-            # It has the place of its figure, and none of the others is told apart from it, outside its range either.
             self.assertEqual(self.ranks(found), [("0.json", 1, 3), ("1.json", 1, 2), ("2.json", 2, 3)])
             self.assertEqual([(p["compared"], p["told_apart"], p["proven"]) for p in found["pairs"]],
                              [(True, False, False), (True, True, False)])
             self.assertEqual([d["damping_open"] for d in found["devices"]], [True, False, False])
             text = self.succeed("compare", "0.json", "1.json", "2.json", "--by", by)
             self.assertIn("WARNING: Told apart from no other, because the points leave the damping open: open.", text)
-            whose = "and no range of the figure that ranks is known; " if by == "matched" else ""
-            self.assertIn("open and good: CANNOT BE TOLD APART: the points of open leave its damping open, "
-                          f"{whose}E from 1.000e-03 to 9.000e-03 V^2 s", " ".join(text.split()))
+            self.assertIn("open and good: CANNOT BE TOLD APART: the points of open leave its damping open, and no range of "
+                          "the figure that ranks is known; emax report --damping takes the damping that a maker states",
+                          " ".join(text.split()))
             self.assertRegex(text, r"\n  1-3   open    beta +\S")
-        self.assertIn("1.000e-03 to 9.000e-03", text)
+            self.assertIsNone(found["devices"][0]["range"])
+
+    def test_ranges_of_an_open_damping_rank(self):
+        """Ahead is whose greatest figure is below the least of the other: 'good' has 3 +- 0.1, so from 2.9 on."""
+        good, poor = result(5e-3, 5e-5, matched=3.0, u_band=0.05, device="good"), result(
+            9.5e-3, 5e-5, matched=9.0, u_band=0.05, device="poor")
+        for by, key, ends in [("matched", "matched", [(2.89, True), (2.91, False), (3.5, False)]),
+                              ("energy", "energy", [(4.89e-3, True), (4.91e-3, False), (6e-3, False)])]:
+            for most, is_ahead in ends:
+                with self.subTest(by=by, most=most):
+                    found = self.compare(open_one(1.0, **{key: [0.1 * most, most]}), good, poor, by=by)
+                    self.assertEqual(self.ranks(found), [("0.json", 1, 1 if is_ahead else 2),
+                                                         ("1.json", 2 if is_ahead else 1, 2), ("2.json", 3, 3)])
+                    pair = found["pairs"][0]
+                    self.assertEqual((pair["told_apart"], pair["proven"], pair["U"]), (is_ahead, False, None))
+                    self.assertEqual(found["devices"][0]["range"], [0.1 * most, most])
+                    text = " ".join(self.succeed("compare", "0.json", "1.json", "2.json", "--by", by).split())
+                    self.assertIn("WARNING: The points leave the damping open: open.", text)
+                    self.assertIn("what tells it apart is its range over these dampings", text)
+                    verdict = "told apart" if is_ahead else "CANNOT BE TOLD APART"
+                    self.assertRegex(text, f"open and good: {verdict}: open has [0-9.e-]+ to [0-9.e-]+ .* over the dampings that "
+                                           "its points leave open, and good has ")
+                    # An estimate does not put it behind what its range may reach below.
+        found = self.compare(good, open_one(4.0, matched=[2.0, 6.0]), poor, by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 2), ("1.json", 1, 2), ("2.json", 3, 3)])
+        found = self.compare(good, open_one(4.0, matched=[3.2, 6.0]), poor, by="matched")
+        self.assertEqual(self.ranks(found), [("0.json", 1, 1), ("1.json", 2, 2), ("2.json", 3, 3)])
+
+    def test_two_ranges_that_touch(self):
+        for least, apart in [(2.01, True), (1.99, False)]:
+            other = open_one(3.0, matched=[least, 4.0])
+            found = self.compare(open_one(1.0, matched=[0.5, 2.0]), other, by="matched")
+            self.assertEqual(found["pairs"][0]["told_apart"], apart)
+
+    def test_ranges_that_are_none(self):
+        for ends, words in [([2.0, 1.0], "ends below its beginning"), ("wide", "is no interval"), ([1.0], "is no interval")]:
+            self.save("0.json", open_one(1.0, matched=ends))
+            self.save("1.json", result(matched=3.0))
+            self.refuse(["compare", "0.json", "1.json"], f"0.json: band.matched.range_percent {words}")
 
     def test_range_of_open_damping_in_percent(self):
         """sqrt(E/T)/(S a) as in a report: 1e-3 and 9e-3 V^2 s in 2 ms are 0.7071 and 2.121 V."""
@@ -562,7 +596,27 @@ class CompareOutput(Comparing, ProgramTest):
         self.assertIn("comparison.html", text)
 
 
+def open_one(value, matched=None, energy=None):
+    """A report whose points leave the damping open, with ranges of its figures or without."""
+    found = result(2e-3, None, matched=value, u_band=None, bound=2.1e-3, device="open") | {
+        "fit": {"determined": "all but beta"} | ({} if energy is None else {"E_range": energy}),
+        "warnings": [{"about": "damping", "text": "the points do not determine beta"}]}
+    found["band"]["matched"] |= {"bound_percent": 1.01 * value} | ({} if matched is None else {"range_percent": matched})
+    return found
+
+
 class ComparePictures(Comparing, ProgramTest):
+    def test_bar_of_an_open_damping(self):
+        for ends, words in [([0.5, 2.0], ["over the dampings left open", "the same, and its range over the dampings left open"]),
+                            (None, ["damping not known", "the same, told apart from no other"])]:
+            drawn = self.draw(open_one(1.0, matched=ends), result(matched=3.0))
+            for each in words:
+                self.assertIn(each, drawn)
+            low, high = ends or (1.0, 1.0)
+            self.assertRegex((self.directory / "out/comparison.gp").read_text(), rf"\n1 {low:g} {high:g} 1.01 ")
+        drawn = self.draw(open_one(1.0, matched=[0.5, 2.0]), open_one(3.0))
+        self.assertIn("the same, or its range, or told apart from no other: see its name", drawn)
+
     def draw(self, *results, options=()):
         names = [self.save(f"{i}.json", content) for i, content in enumerate(results)]
         done = self.run_program("compare", *names, "--out", "out", *options)

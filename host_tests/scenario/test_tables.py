@@ -194,9 +194,57 @@ class TablesOfPiezos(Tables, ProgramTest):
         # Each figure that depends on it has a mark, and what the mark means is below.
         self.assertRegex(text, r"\n  In band, with its delay +\* +0\.")
         self.assertIn("  * There is a warning below, on: damping.\n", text)
-        self.assertIn("The points leave beta open: these figures are at 0.0065;", text)
+        self.assertIn("The points leave beta open: these figures are at 0.0065.\n", text)
         self.assertIn("The energy is given at the least that a device may have, 0.0001,",
                       self.succeed("report", "--points", TABLES / "piezo_00.csv", *QUICK, "--time", "0.0001"))
+
+    def test_in_band_errors_over_the_open_damping(self):
+        """Each damping that may be given within the range has figures within the ranges, at any order of the filter."""
+        for options in [(), ("--order", "3")]:
+            results = self.fit("piezo_02.csv", "--time", "0.002", *options)
+            low, high = results["fit"]["beta_range"]
+            ranges = [results["band"]["range_percent"], results["band"]["matched"]["range_percent"]]
+            for share in [0, 0.02, 0.2, 0.6, 0.99]:
+                given = self.fit("piezo_02.csv", "--time", "0.002", "--damping", repr(low + share * (high - low)), *options)
+                for figure, (least, most) in zip([given["band"], given["band"]["matched"]], ranges):
+                    self.assertTrue(least <= figure["rms_percent"] <= most, (options, share, figure["rms_percent"], least, most))
+                    self.assertNotIn("range_percent", figure)
+
+    def test_ends_of_the_ranges_in_band(self):
+        """The ends are those of single devices: f0 lower or higher by 2u, the damping anything within its range."""
+        name, options = "piezo_02.csv", ["--time", "0.001", "--order", "3"]
+        results = self.fit(name, *options, "--limit", "1")
+        model, (low, high) = results["model"], results["fit"]["beta_range"]
+        # u(f0) of a damping that is known is that of the fit with that damping given.
+        u_f0 = self.fit(name, *options, "--damping", repr(model["beta"]))["model"]["uf0"]
+
+        def of_device(by_u, beta):
+            device = f"{model['S']},{model['f0'] + by_u * u_f0!r},{beta!r}"
+            band = self.json_of("--model", device, *QUICK, *options)["band"]
+            return [band["rms_percent"], band["matched"]["rms_percent"]]
+
+        ends = [of_device(by_u, beta) for by_u in [-2, 2] for beta in [low, high]]
+        # With its delay the least is within the range: low orders let the resonance through, and damping takes it away.
+        inside = [of_device(2, low + i / 40 * (high - low)) for i in range(4, 16)]
+        self.assertGreater(min(figures[0] for figures in ends), 1.1 * min(figures[0] for figures in inside))
+        for i, block in enumerate([results["band"], results["band"]["matched"]]):
+            least, most = block["range_percent"]
+            # f0 moves with the damping by less than a hundredth, and the error with its square; the least is between
+            # two dampings of this grid, where it changes by a twentieth.
+            self.assertAlmostEqual(most / max(figures[i] for figures in ends), 1, delta=0.02)
+            self.assertAlmostEqual(least / min(figures[i] for figures in ends + inside), 0.97, delta=0.04)
+
+    def test_ranges_of_the_report(self):
+        text = self.succeed("report", "--points", TABLES / "piezo_01.csv", *QUICK)
+        for name in ["In band, constant delay taken out", "In band, with its delay", "The paper's figure, sqrt\\(E/T\\)"]:
+            self.assertRegex(text, rf"\n  {name} +\* +[0-9.]+ +[0-9.]+ to [0-9.]+ +[0-9.]+\n")
+        self.assertIn("\n  x to y: over the dampings that the points leave open, with f0 +- 2u.\n", text)
+        self.assertRegex(text, r"\n  Range, as beta is open +[0-9.]+ to [0-9.]+ % of S a, each with its own delay\n")
+        self.assertRegex(text, r"\n  Range, as beta is open +[0-9.]+ to [0-9.]+ % of S a\n")
+        # E of the in-band error has the range of its figure: (p/100 S a)^2 T.
+        results = self.fit("piezo_01.csv", "--criterion", "band", "--time", "0.002", "--limit", "1")
+        for percent, energy in zip(results["band"]["matched"]["range_percent"], results["fit"]["E_range"]):
+            self.assertAlmostEqual(energy / ((percent / 100 * results["model"]["S"]) ** 2 * 0.002), 1, delta=1e-9)
 
     def test_damping_that_is_given(self):
         free = self.fit("piezo_00.csv")

@@ -163,6 +163,9 @@ struct Reach {
 
 Reach reach_of(const Result& result, FigureKind by) noexcept {
   const Figure& figure = result.figure(by);
+  if (figure.has_range) {
+    return {figure.value - figure.low, figure.high - figure.value};
+  }
   if (!figure.is_one_sided) {
     return {figure.expanded, figure.expanded};
   }
@@ -174,7 +177,11 @@ Reach reach_of(const Result& result, FigureKind by) noexcept {
              : reach;
 }
 
-double together(double one, double other) noexcept { return sqrt(one * one + other * other); }
+double together(double one, double other, bool adds_up) noexcept {
+  return adds_up ? one + other : sqrt(one * one + other * other);
+}
+
+bool has_ends(const Figure& figure) noexcept { return figure.has_uncertainty || figure.has_range; }
 
 // Two devices of one name are told apart by their files.
 void mark_namesakes(std::vector<Result>& results) {
@@ -210,6 +217,14 @@ bool is_marked(const Result& result) noexcept {
   return result.fit_warns || result.is_simulated || result.has_open_damping;
 }
 
+bool is_without_range(const Result& result, FigureKind by) noexcept {
+  return result.has_open_damping && !result.figure(by).has_range;
+}
+
+bool is_told_from_none(const Result& result, FigureKind by) noexcept {
+  return !is_comparable(result) || is_without_range(result, by);
+}
+
 double probability_of(const Comparison& comparison) noexcept {
   for (const Result& result : comparison.results) {
     if (comparison.figure(result).has_interval) {
@@ -226,20 +241,22 @@ Pair compare(const Result& first, const Result& second, FigureKind by) noexcept 
   pair.difference = other.value - one.value;
   pair.epsilon = one.epsilon + other.epsilon;
   pair.is_compared = is_comparable(first) && is_comparable(second);
-  pair.has_open_damping = first.has_open_damping || second.has_open_damping;
+  pair.has_open_damping = is_without_range(first, by) || is_without_range(second, by);
+  pair.has_range = one.has_range || other.has_range;
   const bool may_differ = pair.is_compared && !pair.has_open_damping;
-  pair.has_uncertainty = one.has_uncertainty && other.has_uncertainty;
+  pair.has_uncertainty = has_ends(one) && has_ends(other);
   if (pair.has_uncertainty) {
     pair.expanded = kCoverageFactor * sqrt(one.u * one.u + other.u * other.u);
     pair.is_one_sided = one.is_one_sided || other.is_one_sided;
     const Reach of_one = reach_of(first, by);
     const Reach of_other = reach_of(second, by);
-    pair.low = pair.difference - together(of_one.up, of_other.down);
-    pair.high = pair.difference + together(of_one.down, of_other.up);
+    pair.low = pair.difference - together(of_one.up, of_other.down, pair.has_range);
+    pair.high = pair.difference + together(of_one.down, of_other.up, pair.has_range);
     pair.told_apart = may_differ && pair.low > pair.epsilon;
   }
-  pair.proven =
-      may_differ && one.has_bound && one.bound + one.epsilon < other.value - other.epsilon;
+  // A bound is that of the estimates, and proves nothing of other dampings.
+  pair.proven = may_differ && !pair.has_range && one.has_bound &&
+                one.bound + one.epsilon < other.value - other.epsilon;
   return pair;
 }
 

@@ -20,14 +20,16 @@ struct Pair {
   double low = 0.0;
   double high = 0.0;
   bool is_one_sided = false;  ///< One of the figures is.
+  /// One of the figures has the range over its open damping in the place of U.
+  bool has_range = false;
   /// How far the difference can be off beside that, by the way the figures are computed.
   double epsilon = 0.0;
-  bool has_uncertainty = false;  ///< Both devices have one.
+  bool has_uncertainty = false;  ///< Both devices have one, or such a range.
   /// Neither fit warns and neither bench was simulated. Of others nothing is said: u is too small
   /// where the fit warns, and a simulated bench says nothing of a device.
   bool is_compared = false;
-  /// The points of one of the two do not determine its damping: it has a place, but the other may
-  /// be better or worse.
+  /// The points of one of the two do not determine its damping, and no range of its figure is
+  /// known: it has a place, but the other may be better or worse.
   bool has_open_damping = false;
   bool told_apart = false;  ///< Compared, and 0 is outside the interval of the difference.
   /// Able to be told apart, and even the first one's upper bound is below the second one's figure:
@@ -54,8 +56,14 @@ struct Comparison {
 };
 
 /// @returns Whether the fit of a device warns or leaves its damping open, or its bench was
-/// simulated, so that nobody can say which of two devices is better.
+/// simulated.
 bool is_marked(const Result& result) noexcept;
+
+/// @returns Whether its damping is open and no range of the figure that ranks is known.
+bool is_without_range(const Result& result, FigureKind by) noexcept;
+
+/// @returns Whether nobody can say which of two devices is better if this is one of them.
+bool is_told_from_none(const Result& result, FigureKind by) noexcept;
 
 /// @returns The probability of the intervals that `comparison` has; 0 if it has none.
 double probability_of(const Comparison& comparison) noexcept;
@@ -64,7 +72,9 @@ double probability_of(const Comparison& comparison) noexcept;
 ///
 /// How far the difference reaches to a side is the root of the sum of the squares of how far the
 /// figures do (Zou and Donner, Statistics in Medicine 27 (2008) 1693): for intervals of any shape,
-/// and +-U of the difference for symmetric ones.
+/// and +-U of the difference for symmetric ones. Over a range nothing is more likely than the rest,
+/// so that with one of them the reaches add up: a device is better if even its greatest figure is
+/// below the least of the other.
 Pair compare(const Result& first, const Result& second, FigureKind by) noexcept;
 
 /// Compares devices that were measured under the same conditions: filter order, cut-off and gain,

@@ -32,6 +32,11 @@ void write_ranked(const Figure& figure, JsonWriter& json) {
   } else {
     json.null("interval");
   }
+  if (figure.has_range) {
+    json.pair("range", figure.low, figure.high);
+  } else {
+    json.null("range");
+  }
   write_optional("bound", figure.has_bound, figure.bound, json);
 }
 
@@ -91,7 +96,7 @@ void write_pair(const Comparison& comparison, std::size_t index, JsonWriter& jso
   const Pair& pair = comparison.pairs[index];
   json.open(nullptr);
   json.number("difference", pair.difference);
-  write_optional("U", pair.has_uncertainty, pair.expanded, json);
+  write_optional("U", pair.has_uncertainty && !pair.has_range, pair.expanded, json);
   if (pair.has_uncertainty) {
     json.pair("interval", pair.low, pair.high);
   } else {

@@ -64,7 +64,7 @@ bool spans_decades(const Comparison& comparison, std::size_t rows) {
 
 // Of the bar: the interval where the figure is at one end of it.
 Range ends_of(const Figure& figure) {
-  return figure.is_one_sided
+  return figure.is_one_sided || figure.has_range
              ? Range{figure.low, figure.high}
              : Range{figure.value - figure.expanded, figure.value + figure.expanded};
 }
@@ -97,7 +97,8 @@ std::vector<std::string> name_of_row(const Comparison& comparison, std::size_t i
     lines.emplace_back("fit warns: not told apart");
   }
   if (result.has_open_damping) {
-    lines.emplace_back("damping not known");
+    lines.emplace_back(result.figure(comparison.by).has_range ? "over the dampings left open"
+                                                              : "damping not known");
   }
   if (result.is_simulated) {
     lines.emplace_back("simulated: not told apart");
@@ -243,6 +244,19 @@ void write_axes(const Comparison& comparison, const Layout& layout, TextWriter& 
   }
 }
 
+// What a mark means for the bars of those that have one.
+const char* words_on_marked(const Comparison& comparison, std::size_t rows) {
+  const auto first = comparison.results.begin();
+  const auto end = first + static_cast<std::ptrdiff_t>(rows);
+  const bool any_of_none = std::any_of(
+      first, end, [&](const Result& result) { return is_told_from_none(result, comparison.by); });
+  const bool any_range = std::any_of(
+      first, end, [&](const Result& result) { return comparison.figure(result).has_range; });
+  return !any_range     ? "told apart from no other"
+         : !any_of_none ? "and its range over the dampings left open"
+                        : "or its range, or told apart from no other: see its name";
+}
+
 void write_plot(const Comparison& comparison, const Layout& layout, TextWriter& out) {
   const auto first = comparison.results.begin();
   const auto end = first + static_cast<std::ptrdiff_t>(layout.rows);
@@ -258,7 +272,8 @@ void write_plot(const Comparison& comparison, const Layout& layout, TextWriter& 
   }
   if (has_marked) {
     out.text(before).text("$marked using 1:5:2:3 with xerrorbars lc '#000000' lw 1 pt 6 ps 1 ");
-    out.text("title 'the same, told apart from no other', \\\n     ");
+    out.text("title 'the same, ").text(words_on_marked(comparison, layout.rows));
+    out.text("', \\\n     ");
   }
   const char* data = has_others ? "$devices" : "$marked";
   out.text(data).text(" using 4:5 with points lc '#d05000' lw 2 pt 8 ps 1.5 ");

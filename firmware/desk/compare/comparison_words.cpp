@@ -177,6 +177,9 @@ std::string ranges_of(const std::vector<const Result*>& open) {
   return words;
 }
 
+constexpr const char* kFigureOfOpen =
+    ". The figure is that of the estimate, or of the nearest damping that a device may have";
+
 void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) {
   const std::vector<const Result*> warned =
       those_that(comparison, [](const Result& result) { return result.fit_warns; });
@@ -187,15 +190,20 @@ void add_notes_on_marks(const Comparison& comparison, std::vector<Note>& notes) 
              "figure and its U mean little.",
          true});
   }
+  const FigureKind by = comparison.by;
   const std::vector<const Result*> open =
-      those_that(comparison, [](const Result& result) { return result.has_open_damping; });
+      those_that(comparison, [by](const Result& result) { return is_without_range(result, by); });
   if (!open.empty()) {
-    notes.push_back(
-        {"Told apart from no other, because the points leave the damping open: " + list_of(open) +
-             ". The figure is that of the estimate, or of the nearest damping that a device may "
-             "have" +
-             ranges_of(open) + ".",
-         true});
+    notes.push_back({"Told apart from no other, because the points leave the damping open: " +
+                         list_of(open) + kFigureOfOpen + ranges_of(open) + ".",
+                     true});
+  }
+  const std::vector<const Result*> ranged =
+      those_that(comparison, [by](const Result& result) { return result.figure(by).has_range; });
+  if (!ranged.empty()) {
+    notes.push_back({"The points leave the damping open: " + list_of(ranged) + kFigureOfOpen +
+                         "; what tells it apart is its range over these dampings.",
+                     true});
   }
   const std::vector<const Result*> simulated = simulated_of(comparison);
   if (!simulated.empty()) {
@@ -293,25 +301,46 @@ std::string reason_not_compared(const Result& first, const Result& second) {
   return reason;
 }
 
+constexpr const char* kGiveDamping =
+    "; emax report --damping takes the damping that a maker states";
+
 std::string open_damping_of(const Result& first, const Result& second, FigureKind by) {
   std::string words;
   for (const Result* result : {&first, &second}) {
-    if (!result->has_open_damping) {
+    if (!is_without_range(*result, by)) {
       continue;
     }
     const Figure& energy = result->figure(FigureKind::kEnergy);
     words += (words.empty() ? "the points of " : "; those of ") + short_name_of(*result) +
              " leave its damping open";
+    words += ", and no range of the figure that ranks is known";
     if (energy.has_range) {
-      // A report has no range of the others.
-      words += by == FigureKind::kEnergy
-                   ? ", E from "
-                   : ", and no range of the figure that ranks is known; E from ";
-      words += interval_text(energy, FigureKind::kEnergy) + " V^2 s";
+      words += "; E from " + interval_text(energy, FigureKind::kEnergy) + " V^2 s";
     }
   }
-  return words.empty() ? words
-                       : words + "; emax report --damping takes the one that a maker states";
+  return words.empty() ? words : words + kGiveDamping;
+}
+
+// Where a figure is: over the dampings that its points leave open, or with its U.
+std::string place_of(const Result& result, FigureKind by) {
+  const Figure& figure = result.figure(by);
+  const std::string name = short_name_of(result);
+  const std::string unit = figure_words(by).unit;
+  if (figure.has_range) {
+    return name + " has " + interval_text(figure, by) + unit +
+           " over the dampings that its points leave open";
+  }
+  if (figure.is_one_sided) {
+    return name + " has " + interval_text(figure, by) + unit;
+  }
+  return name + " has " + value_text(figure, by) + unit + " with U = " + expanded_text(figure, by);
+}
+
+// Of two devices, where one or both have a range.
+Fact verdict_by_range(const Result& first, const Result& second, const Pair& pair, FigureKind by) {
+  const std::string places = place_of(first, by) + ", and " + place_of(second, by);
+  return pair.told_apart ? Fact{"told apart", places}
+                         : Fact{"CANNOT BE TOLD APART", places + kGiveDamping};
 }
 
 // Of a difference to the first of two figures.
@@ -443,7 +472,8 @@ std::string if_gain_of(const Result& result) {
 Fact legend_of_uncertainty(const Comparison& comparison) {
   const std::size_t count = comparison.results.size();
   const std::size_t without = those_that(comparison, [&](const Result& result) {
-                                return !comparison.figure(result).has_uncertainty;
+                                const Figure& figure = comparison.figure(result);
+                                return !figure.has_uncertainty && !figure.has_range;
                               }).size();
   const std::string bound = "At the estimates no signal has more than the bound.";
   if (without == count) {
@@ -559,9 +589,11 @@ std::vector<Fact> legend_of(const Comparison& comparison) {
   legend.push_back(legend_of_uncertainty(comparison));
   if (has_marks(comparison)) {
     legend.push_back({"mark",
-                      "fit: chi-square of the fit warns; beta: its points leave the damping open, "
-                      "and an interval of E is its range; sim: the bench was simulated. Such a "
-                      "device shares the rank of its neighbours, whatever its numbers."});
+                      "fit: chi-square of the fit warns; sim: the bench was simulated. Such a "
+                      "device shares the rank of its neighbours, whatever its numbers. beta: its "
+                      "points leave the damping open. The interval is then the range of its figure "
+                      "over these dampings, and nothing in it is more likely than the rest; "
+                      "without a range it shares the rank of its neighbours, too."});
   }
   return legend;
 }
@@ -592,6 +624,9 @@ Fact verdict_of(const Comparison& comparison, std::size_t index) {
     return {"CANNOT BE RANKED", std::string("no uncertainty is known for ") +
                                     (has_one ? "one of them" : "either") +
                                     "; give u of S, f0 and beta, or measured points"};
+  }
+  if (pair.has_range) {
+    return verdict_by_range(first, second, pair, comparison.by);
   }
   const std::string difference = difference_of(comparison, first, pair);
   if (!pair.told_apart) {

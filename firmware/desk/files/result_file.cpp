@@ -245,20 +245,26 @@ void take_energy(const JsonValue& root, Taker& taker, Result& result) {
   }
 }
 
-// What the points leave open instead of an uncertainty.
-void take_open_damping(const JsonValue& root, Result& result) {
-  const JsonValue& fit = root["fit"];
-  result.has_open_damping = fit["determined"].text() == "all but beta";
-  const std::vector<JsonValue>& ends = fit["E_range"].elements();
-  if (result.has_open_damping && ends.size() == 2 && ends[0].is_number() && ends[1].is_number()) {
-    Figure& energy = result.figure(FigureKind::kEnergy);
-    energy.has_range = true;
-    energy.low = ends[0].number();
-    energy.high = ends[1].number();
+// Over the dampings that the points leave open, instead of an uncertainty.
+void take_range(const Group& block, const char* name, Taker& taker, Figure& figure) {
+  Figure range;
+  taker.optional_interval(block, name, range);
+  if (range.has_interval) {
+    figure.has_range = true;
+    figure.low = std::min(range.low, figure.value);
+    figure.high = std::max(range.high, figure.value);
   }
 }
 
-void take_figure(const Group& block, Taker& taker, Figure& figure) {
+void take_open_damping(const JsonValue& root, Taker& taker, Result& result) {
+  const Group fit = {root["fit"], "fit"};
+  result.has_open_damping = fit.value["determined"].text() == "all but beta";
+  if (result.has_open_damping) {
+    take_range(fit, "E_range", taker, result.figure(FigureKind::kEnergy));
+  }
+}
+
+void take_figure(const Group& block, bool has_open_damping, Taker& taker, Figure& figure) {
   figure.exists = true;
   figure.value = taker.size(block, "rms_percent");
   taker.bound(block, "bound_percent", figure);
@@ -267,6 +273,8 @@ void take_figure(const Group& block, Taker& taker, Figure& figure) {
     figure.expanded = taker.size(block, "U_percent");
     taker.optional_interval(block, "interval_percent", figure);
     take_shortest(block, "shortest_percent", taker, figure);
+  } else if (has_open_damping) {
+    take_range(block, "range_percent", taker, figure);
   }
 }
 
@@ -276,14 +284,14 @@ void take_band(const JsonValue& root, Taker& taker, Result& result) {
     result.band_refused = root["band_refused"].text();
     return;
   }
-  take_figure(band, taker, result.figure(FigureKind::kBand));
+  take_figure(band, result.has_open_damping, taker, result.figure(FigureKind::kBand));
   const Group matched = {band.value["matched"], "band.matched"};
   if (!matched.value.is_object()) {
     result.matched_refused = band.value["matched_refused"].text();
     return;
   }
   Figure& figure = result.figure(FigureKind::kMatched);
-  take_figure(matched, taker, figure);
+  take_figure(matched, result.has_open_damping, taker, figure);
   figure.epsilon = taker.size(matched, "epsilon_percent");
   result.delay = taker.delay(matched, true);
 }
@@ -394,7 +402,7 @@ Problem read_result(const std::string& path, Result& result) {
   Taker taker;
   take_conditions(root, taker, result);
   take_energy(root, taker, result);
-  take_open_damping(root, result);
+  take_open_damping(root, taker, result);
   take_band(root, taker, result);
   take_marks(root, result);
   if (!taker.missing().empty()) {

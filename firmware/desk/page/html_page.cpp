@@ -141,6 +141,12 @@ std::string range_of(const EvaluationResults& results) {
          ")" + format.unit();
 }
 
+// Over the dampings that the points leave open.
+std::string range_of(const EvaluationResults& results, const CoverageInterval& energies_v2s) {
+  const CoverageInterval range = results.interval_percent_of(energies_v2s, energies_v2s.low);
+  return "; " + range_text(range.low, range.high) + " % as beta is open";
+}
+
 // With U, or with the interval where the figure is at one end of it.
 std::string value_of(const EvaluationResults& results, const app::EnergyUncertainty& known,
                      double energy) {
@@ -167,7 +173,10 @@ void append_in_band(std::string& html, const char* kind, const EvaluationResults
             : figure.uncertainty.exists() ? " (U, k = 2)"
                                           : "");
   }
-  append_figure(html, kind, name, value_of(results, figure.uncertainty, figure.energy_v2s));
+  append_figure(
+      html, kind, name,
+      value_of(results, figure.uncertainty, figure.energy_v2s) +
+          (figure.has_range ? range_of(results, {figure.least_v2s, figure.greatest_v2s}) : ""));
 }
 
 constexpr const char* kFirst = " class=\"first\"";
@@ -192,7 +201,10 @@ void append_papers_figure(std::string& html, const EvaluationResults& results) {
   if (energy < 0.0 || results.settings.criterion == Criterion::kInBandError) {
     return;
   }
-  const std::string value = value_of(results, results.uncertainty, energy);
+  const std::string value = value_of(results, results.uncertainty, energy) +
+                            (results.has_cut_range && results.cut_low_v2s > 0.0
+                                 ? range_of(results, {results.cut_low_v2s, results.cut_high_v2s})
+                                 : "");
   const bool is_error = results.settings.criterion == Criterion::kIntegralSquareError;
   append_figure(html, "",
                 is_error ? "The paper's figure, √(E/T)" : "The energy difference, as √(E/T)",

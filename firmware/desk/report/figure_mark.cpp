@@ -21,18 +21,11 @@ constexpr Warning kMarking[] = {
     Warning::kCrowded,     Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
     Warning::kMeasurement, Warning::kEnded,       Warning::kDataSheet,     Warning::kChange};
 
-std::string range_of(const app::EvaluationResults& results) {
+std::string words_on_open_damping(const app::EvaluationResults& results) {
   StringSink sink;
   app::TextWriter out(sink);
   out.text("\n  The points leave beta open: these figures are at ");
-  out.general(results.judgement.device.damping, 3);
-  if (results.has_cut_range && results.cut_low_v2s > 0.0) {
-    const bool is_papers = results.settings.criterion == Criterion::kIntegralSquareError;
-    out.text(is_papers ? ";\n  the paper's is " : ";\n  that of E is ")
-        .general(results.percent_of(results.cut_low_v2s), 4);
-    out.text(" to ").general(results.percent_of(results.cut_high_v2s), 4).text(" over the range");
-  }
-  out.text(".");
+  out.general(results.judgement.device.damping, 3).text(".");
   return sink.text();
 }
 
@@ -92,7 +85,7 @@ FigureMark mark_of_figures(const app::EvaluationResults& results,
   }
   if (!topics.empty()) {
     mark.words = "There is a warning below, on: " + topics + "." +
-                 (results.is_damping_open() ? range_of(results) : "");
+                 (results.is_damping_open() ? words_on_open_damping(results) : "");
   }
   return mark;
 }

@@ -13,8 +13,9 @@ namespace {
 constexpr double kPercent = 100.0;
 
 /// Whether something of a figure is still to be done.
-bool lacks(const FigureResults& figure, bool with_uncertainty) noexcept {
-  return !figure.is_done || (with_uncertainty && figure.exists() && !figure.uncertainty.is_done);
+bool lacks(const FigureResults& figure, bool with_uncertainty, bool with_range) noexcept {
+  return !figure.is_done || (with_uncertainty && figure.exists() && !figure.uncertainty.is_done) ||
+         (with_range && figure.exists() && !figure.is_range_done);
 }
 
 SearchSettings figure_search(const Settings& settings) noexcept {
@@ -36,9 +37,9 @@ bool Evaluation::begin_next_figure() noexcept {
   const bool with_uncertainty = work_.goal_ == Goal::kReport && results_.has_uncertainty();
   if (!results_.ideal.is_done) {
     begin_figure(Stage::kIdeal);
-  } else if (lacks(results_.band, with_uncertainty)) {
+  } else if (lacks(results_.band, with_uncertainty, wants_figure_range())) {
     begin_figure(Stage::kBand);
-  } else if (lacks(results_.matched, with_uncertainty)) {
+  } else if (lacks(results_.matched, with_uncertainty, wants_figure_range())) {
     begin_figure(Stage::kMatched);
   } else {
     return false;
@@ -56,18 +57,27 @@ Status Evaluation::set_figure_model(ModalModel& model) const noexcept {
     return model.set_ideal(device.sensitivity, filter, settings.criterion,
                            has_delay ? settings.delay_s : 0.0);
   }
+  return model.set(device, filter, figure_measure());
+}
+
+ErrorMeasure Evaluation::figure_measure() const noexcept {
+  const Settings& settings = results_.settings;
   ReferenceDelay delay;
   if (results_.stage == Stage::kMatched) {
     const bool is_given = settings.delay_choice == DelayChoice::kGiven;
     delay = is_given ? delay_of(settings) : ReferenceDelay{DelayMode::kOfSensor, 0.0};
   }
-  return model.set(device, filter, {Criterion::kInBandError, delay});
+  return {Criterion::kInBandError, delay};
 }
 
 // Whatever stands in the way of a figure is written down with it; the evaluation goes on.
 void Evaluation::begin_figure(Stage stage) noexcept {
   using Phase = EvaluationWorkspace::FigurePhase;
   results_.stage = stage;
+  if (stage != Stage::kIdeal && figure().is_done && wants_figure_range()) {
+    begin_figure_range();
+    return;
+  }
   work_.figure_phase_ = Phase::kSearch;
   auto* const part = new (&work_.part_.figure) EvaluationWorkspace::FigurePart;
   Status status = set_figure_model(part->model);
@@ -126,6 +136,9 @@ void Evaluation::step_figure() noexcept {
     case Phase::kGuard:
       step_figure_guard();
       return;
+    case Phase::kRange:
+      step_figure_range();
+      return;
     case Phase::kEnd:
       go_on();
       return;
@@ -147,6 +160,8 @@ double Evaluation::progress_of_figure() const noexcept {
       return progress_of_trials();
     case Phase::kGuard:
       return work_.guard_.progress();
+    case Phase::kRange:
+      return work_.part_.figure_range.range.progress();
     case Phase::kEnd:
       break;
   }
@@ -226,7 +241,37 @@ void Evaluation::end_figure_energy(bool is_proven) noexcept {
   work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
   if (work_.goal_ == Goal::kReport && results_.has_uncertainty()) {
     begin_figure_trials();
+  } else if (wants_figure_range()) {
+    begin_figure_range();
   }
+}
+
+/// Whether the dampings that the points leave open are gone through for each figure.
+bool Evaluation::wants_figure_range() const noexcept {
+  return work_.goal_ == Goal::kReport && results_.is_damping_open();
+}
+
+void Evaluation::begin_figure_range() noexcept {
+  auto* const part = new (&work_.part_.figure_range) EvaluationWorkspace::FigureRangePart;
+  part->range.start(
+      results_.judgement,
+      {reference_filter(results_), figure_measure(), figure().energy_v2s / results_.a2()},
+      figure_search(results_.settings), results_.settings.gain_mode != GainMode::kFixed);
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kRange;
+}
+
+void Evaluation::step_figure_range() noexcept {
+  FigureRange& range = work_.part_.figure_range.range;
+  range.step(work_.search_, work_.grid_);
+  if (!range.done()) {
+    return;
+  }
+  FigureResults& figure = this->figure();
+  figure.is_range_done = true;
+  figure.has_range = range.is_found();
+  figure.least_v2s = results_.a2() * range.low();
+  figure.greatest_v2s = results_.a2() * range.high();
+  work_.figure_phase_ = EvaluationWorkspace::FigurePhase::kEnd;
 }
 
 // The search's result is still there; the model's place is that of the trials.

@@ -119,6 +119,8 @@ void FigureResults::clear() noexcept {
   delay_s = 0.0;
   epsilon_percent = 0.0;
   uncertainty = {};
+  is_range_done = false;
+  has_range = false;
 }
 
 void EvaluationResults::drop_uncertainties() noexcept {
@@ -131,6 +133,10 @@ bool EvaluationResults::has_uncertainties() const noexcept {
   const bool has_band = !band.exists() || band.uncertainty.is_done;
   const bool has_matched = !matched.exists() || matched.uncertainty.is_done;
   return uncertainty.is_done && has_band && has_matched;
+}
+
+bool EvaluationResults::has_figure_ranges() const noexcept {
+  return (!band.exists() || band.is_range_done) && (!matched.exists() || matched.is_range_done);
 }
 
 void EvaluationResults::drop_trials() noexcept {
@@ -165,7 +171,8 @@ bool EvaluationResults::holds(Goal goal, const Settings& wanted) const noexcept 
   }
   const bool holds_energy = has_energy && is_bound_done;
   const bool holds_trials = has_monte_carlo && is_same_trials(settings, wanted);
-  const bool has_rest_of_trials = is_damping_open() ? is_cut_done : !has_uncertainty();
+  const bool has_rest_of_trials =
+      is_damping_open() ? is_cut_done && has_figure_ranges() : !has_uncertainty();
   const bool holds_trend = has_trend && is_same_trend(settings, wanted);
   const bool holds_draws = has_fit_draws && is_same_random(settings, wanted);
   switch (goal) {

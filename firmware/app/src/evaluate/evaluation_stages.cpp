@@ -83,8 +83,10 @@ double Evaluation::progress_of_stage() const noexcept {
     case Stage::kBound:
       return work_.part_.bound.bound.progress();
     case Stage::kPrediction:
-      return results_.is_damping_open() ? work_.part_.cut.range.progress()
-                                        : work_.part_.trial.trials.progress();
+      return !results_.is_damping_open() ? work_.part_.trial.trials.progress()
+             : results_.settings.criterion == Criterion::kInBandError
+                 ? work_.part_.figure_range.range.progress()
+                 : work_.part_.cut.range.progress();
     case Stage::kAdaptive:
       return adaptive_progress(work_.part_.trial.adaptive);
     case Stage::kMonteCarlo:
@@ -302,15 +304,30 @@ TrialSettings Evaluation::trial_settings(Distribution distribution) const noexce
 
 void Evaluation::begin_cut_range() noexcept {
   const Settings& settings = results_.settings;
-  auto* const part = new (&work_.part_.cut) EvaluationWorkspace::CutPart;
-  part->range.start(results_.model, results_.judgement,
-                    search_settings(settings, settings.duration_s),
-                    settings.gain_mode == GainMode::kTrack);
+  const SearchSettings search = search_settings(settings, settings.duration_s);
   results_.stage = Stage::kPrediction;
+  if (settings.criterion == Criterion::kInBandError) {
+    auto* const part = new (&work_.part_.figure_range) EvaluationWorkspace::FigureRangePart;
+    part->range.start(results_.judgement,
+                      {reference_filter(results_), measure_of(settings), results_.maximum.energy},
+                      search, settings.gain_mode != GainMode::kFixed);
+    return;
+  }
+  auto* const part = new (&work_.part_.cut) EvaluationWorkspace::CutPart;
+  part->range.start(results_.model, results_.judgement, search,
+                    settings.gain_mode == GainMode::kTrack);
 }
 
 void Evaluation::step_cut_range() noexcept {
-  CutRange& range = work_.part_.cut.range;
+  if (results_.settings.criterion == Criterion::kInBandError) {
+    step_cut_range(work_.part_.figure_range.range);
+  } else {
+    step_cut_range(work_.part_.cut.range);
+  }
+}
+
+template <typename Range>
+void Evaluation::step_cut_range(Range& range) noexcept {
   range.step(work_.search_, work_.grid_);
   if (!range.done()) {
     return;

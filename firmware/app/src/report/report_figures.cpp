@@ -32,7 +32,8 @@ struct Row {
   const char* name;
   bool is_marked;
   double percent;
-  bool has_u;
+  bool has_u;  ///< Or an interval, or a range.
+  bool has_expanded;
   double expanded;  ///< U in percent.
   bool has_bound;
   double bound_percent;
@@ -88,8 +89,12 @@ void write_expanded(const Row& row, int decimals, ReportWriter& out) noexcept {
   } else if (!row.is_one_sided) {
     write_cell(row.expanded, decimals, kDigitsOfU, out, kExpandedWidth);
   } else {
-    // Outwards, both in the decimals of the far end.
-    const int of_end = decimals_of(row.interval.high, kDigitsOfU);
+    // Outwards, both in the decimals of the far end; a range in one digit more where there is room.
+    constexpr int kMostOfRange = 4;
+    const int finer = decimals_of(row.interval.high, kDigitsOfU + 1);
+    const int of_end = !row.has_expanded && finer <= kMostOfRange
+                           ? finer
+                           : decimals_of(row.interval.high, kDigitsOfU);
     const double low = rounded_down(row.interval.low, of_end);
     const double high = rounded_up(row.interval.high, of_end);
     const std::size_t beside = kWidthOfRest + static_cast<std::size_t>(of_end);
@@ -130,15 +135,17 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
   const CoverageInterval interval =
       has_u
           ? results.interval_percent_of(figure.uncertainty.shortest_of_percent(), figure.energy_v2s)
-          : CoverageInterval{};
+          : CoverageInterval{results.percent_of(figure.least_v2s),
+                             results.percent_of(figure.greatest_v2s)};
   return {name,
           is_marked,
           percent,
+          has_u || figure.has_range,
           has_u,
           figure.uncertainty.expanded_percent(),
           figure.has_bound,
           results.percent_of(figure.bound_v2s),
-          results.is_one_sided(figure),
+          figure.has_range || results.is_one_sided(figure),
           interval};
 }
 
@@ -154,17 +161,21 @@ bool write_papers_rows(const EvaluationResults& results, std::uint32_t marked,
   if (criterion != Criterion::kInBandError) {
     const EnergyUncertainty& known = results.uncertainty;
     const bool has_u = known.exists();
+    const bool has_range = results.has_cut_range && results.cut_low_v2s > 0.0;
     const bool is_error = criterion == Criterion::kIntegralSquareError;
     const double percent = results.percent_of(energy);
     const double expanded = known.expanded_percent();
     const CoverageInterval interval =
         has_u ? results.interval_percent_of(known.shortest_of_percent(), energy)
-              : CoverageInterval{};
-    is_any_one_sided = results.is_one_sided(known, energy);
-    write_row({is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
-               (marked & kRowEnergy) != 0, percent, has_u, expanded, results.has_bound,
-               results.percent_of(results.bound_v2s), is_any_one_sided, interval},
-              out);
+        : has_range
+            ? results.interval_percent_of({results.cut_low_v2s, results.cut_high_v2s}, energy)
+            : CoverageInterval{};
+    is_any_one_sided = has_range || results.is_one_sided(known, energy);
+    write_row(
+        {is_error ? "The paper's figure, sqrt(E/T)" : "The energy difference, sqrt(E/T)",
+         (marked & kRowEnergy) != 0, percent, has_u || has_range, has_u, expanded,
+         results.has_bound, results.percent_of(results.bound_v2s), is_any_one_sided, interval},
+        out);
   }
   if (results.ideal.exists() &&
       (results.ideal.energy_v2s > 0.0 || criterion != Criterion::kInBandError)) {
@@ -172,6 +183,7 @@ bool write_papers_rows(const EvaluationResults& results, std::uint32_t marked,
                                                     : "The same of an ideal sensor, K = S",
                false,
                results.percent_of(results.ideal.energy_v2s),
+               false,
                false,
                0.0,
                false,
@@ -238,6 +250,21 @@ void write_known(const EvaluationResults& results, const EnergyUncertainty& know
   write_rough_trials(known.rough_trials, known.rough_part, out);
 }
 
+/// Over the dampings that the points leave open.
+void write_range(const EvaluationResults& results, const FigureResults& figure,
+                 ReportWriter& out) noexcept {
+  out.label("Range, as beta is open");
+  if (!figure.has_range) {
+    out.text("none: within it a search needs more room, or the delay is too long").line();
+    return;
+  }
+  constexpr int kDigits = 4;
+  out.general(results.percent_of(figure.least_v2s), kDigits).text(" to ");
+  out.general(results.percent_of(figure.greatest_v2s), kDigits).text(" % of S a");
+  const bool is_of_sensor = results.settings.delay_choice != DelayChoice::kGiven;
+  out.text(&figure == &results.matched && is_of_sensor ? ", each with its own delay" : "").line();
+}
+
 void write_figure(const EvaluationResults& results, const FigureResults& figure,
                   ReportWriter& out) noexcept {
   const double duration_s = results.settings.duration_s;
@@ -249,6 +276,9 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
   const EnergyUncertainty& known = figure.uncertainty;
   if (known.exists()) {
     write_known(results, known, figure.energy_v2s, out);
+  }
+  if (figure.is_range_done) {
+    write_range(results, figure, out);
   }
 }
 
@@ -366,7 +396,9 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
           "  with S = G, the filter's gain")
       .text(is_given ? ", but not with a delay given" : "")
       .text(".\n  None exceeds: proven at the estimates.\n");
-  if (is_one_sided) {
+  if (is_one_sided && results.is_damping_open()) {
+    out.text("  x to y: over the dampings that the points leave open, with f0 +- 2u.\n");
+  } else if (is_one_sided) {
     out.text("  x to y: where the figure is with ");
     out.general(kPercent * results.settings.probability, 6);
     out.text(" %, as +-U says too little.\n");

@@ -376,6 +376,10 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
     json.number(nullptr, time_s);
   }
   json.close_row();
+  if (figure.has_range) {
+    write_interval_in_percent("range_percent", results, {figure.least_v2s, figure.greatest_v2s},
+                              json);
+  }
   write_figure_uncertainty(results, figure, json);
 }
 

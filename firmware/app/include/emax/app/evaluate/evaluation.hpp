@@ -147,6 +147,8 @@ class Evaluation {
   Status take_fit(Status fit_status) noexcept;
   void begin_cut_range() noexcept;
   void step_cut_range() noexcept;
+  template <typename Range>
+  void step_cut_range(Range& range) noexcept;
   void begin_trials() noexcept;
   void note_root(std::uint32_t trial, double energy_v2s, bool is_stored) noexcept;
   bool holds_sensitivity() const noexcept;
@@ -176,11 +178,15 @@ class Evaluation {
   double sensitivity_of(std::uint32_t trial, bool is_stored) noexcept;
   void end_figure_energy(bool is_proven) noexcept;
   void begin_figure_trials() noexcept;
+  void begin_figure_range() noexcept;
+  void step_figure_range() noexcept;
+  bool wants_figure_range() const noexcept;
   void refuse_figure(Status status) noexcept;
   void refuse_uncertainty(Status status) noexcept;
   double progress_of_figure() const noexcept;
   double progress_of_trials() const noexcept;
   Status set_figure_model(ModalModel& model) const noexcept;
+  ErrorMeasure figure_measure() const noexcept;
   FigureResults& figure() noexcept;
   EnergyUncertainty& uncertainty() noexcept;
   TrialSettings trial_settings(Distribution distribution) const noexcept;

@@ -141,6 +141,10 @@ struct FigureResults {
   double delay_s = 0.0;          ///< Taken out of the reference.
   double epsilon_percent = 0.0;  ///< By which the true delay may change the rms, in % of S a.
   EnergyUncertainty uncertainty;
+  bool is_range_done = false;  ///< Where the points leave the damping open: looked for.
+  bool has_range = false;      ///< False where a search within the range has failed.
+  double least_v2s = 0.0;      ///< With `has_range`: over these dampings, for the S of the
+  double greatest_v2s = 0.0;   ///< estimate. A delay that is the sensor's is each one's own.
   double times_kept_s[kTimes] = {};
 
   bool exists() const noexcept { return is_done && status == Status::kOk; }
@@ -247,6 +251,8 @@ struct EvaluationResults {
   bool has_uncertainty() const noexcept;
   /// @returns Whether both in-band errors and the ideal sensor were looked for.
   bool has_figures() const noexcept { return ideal.is_done && band.is_done && matched.is_done; }
+  /// @returns Whether the ranges of both in-band errors were looked for, where the damping is open.
+  bool has_figure_ranges() const noexcept;
   /// @returns Whether nothing can be added to the uncertainties.
   bool has_uncertainties() const noexcept;
 

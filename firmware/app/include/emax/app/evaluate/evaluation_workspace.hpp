@@ -8,6 +8,7 @@
 #include "emax/app/evaluate/cut_range.hpp"
 #include "emax/app/evaluate/evaluation_helper.hpp"
 #include "emax/app/evaluate/evaluation_results.hpp"
+#include "emax/app/evaluate/figure_range.hpp"
 #include "emax/base/capacity.hpp"
 #include "emax/base/span.hpp"
 #include "emax/bound/energy_bound.hpp"
@@ -48,6 +49,9 @@ class EvaluationWorkspace {
   struct CutPart : InPlace {
     CutRange range;
   };
+  struct FigureRangePart : InPlace {
+    FigureRange range;
+  };
   struct FigurePart : InPlace {
     ModalModel model;
     EnergyBound bound;
@@ -77,6 +81,7 @@ class EvaluationWorkspace {
     ModelPart model;
     BoundPart bound;
     CutPart cut;
+    FigureRangePart figure_range;
     FigurePart figure;
     TrialPart trial;
   };
@@ -88,6 +93,7 @@ class EvaluationWorkspace {
     kPrediction,
     kTrials,
     kGuard,
+    kRange,
     kEnd
   };
   static_assert(!kHasDefaultCapacities ||
