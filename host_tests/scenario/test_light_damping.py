@@ -73,6 +73,12 @@ class LightDamping(ProgramTest):
         self.assert_is_interpolated(
             self.succeed("report", "--points", DATA / "tables" / "high_pass.csv", "--trend", "none"), 2)
 
+    def test_a_damping_that_is_given(self):
+        """Over f0 alone E changes little, and by steps that no degree follows; the first degree then stands."""
+        self.assert_is_interpolated(
+            self.succeed("report", "--points", DATA / "tables" / "mv_per_g.csv", "--trend", "none", "--damping", "0.0264",
+                         "--time", "0.005"), 10)
+
     def test_limit_of_the_binomial(self):
         # Of 400 draws at 95 %, fewer than 371 happen in 1.90 % and fewer than 372 in 3.07 %.
         self.assertEqual(least_inside(400), 371)

@@ -100,14 +100,16 @@ Status Wlsp::fit(const FrequencyResponse& response) noexcept {
   return may_hold_given() ? hold_given() : solved;
 }
 
-// The damping given is among those that the points leave open.
+// The damping given is among those that the points leave open, whose end is printed in three
+// digits.
 bool Wlsp::may_hold_given() const noexcept {
   if (!(given_damping_ >= kMinDamping) || held_damping_ > 0.0) {
     return false;
   }
   const FitJudgement judgement = judge(fit_);
-  return judgement.determined == Determined::kAllButDamping &&
-         given_damping_ <= judgement.damping_high;
+  constexpr double kRoundedUp = 1.005;
+  return judgement.determined == Determined::kAllButDamping && given_damping_ < 1.0 &&
+         given_damping_ <= kRoundedUp * judgement.damping_high;
 }
 
 Status Wlsp::hold_given() noexcept {

@@ -210,8 +210,17 @@ void ResonanceSurface::step_node(EnergyBranches& branches, GridWorkspace& worksp
     }
   }
   if (++point_ == frequency_.nodes * damping_.nodes) {
-    point_ = 0;
-    phase_ = Phase::kChecks;
+    end_nodes();
+  }
+}
+
+void ResonanceSurface::end_nodes() noexcept {
+  point_ = 0;
+  phase_ = Phase::kChecks;
+  if (is_lowered_) {  // Checked before.
+    misfit_ = first_misfit_;
+    rough_part_ = first_rough_part_;
+    phase_ = Phase::kDone;
   }
 }
 
@@ -279,12 +288,24 @@ void ResonanceSurface::end_checks(const DeviceDraws& draws) noexcept {
     phase_ = Phase::kDone;
     return;
   }
-  if (is_raised_) {
-    phase_ = Phase::kFailed;
+  if (!is_raised_) {
+    is_raised_ = true;
+    first_rough_part_ = rough_part_;
+    first_misfit_ = misfit_;
+    begin_nodes(kMoreNodes);
     return;
   }
-  is_raised_ = true;
-  begin_nodes(kMoreNodes);
+  phase_ = Phase::kFailed;
+  if (first_rough_part_ <= kAccepted) {
+    is_lowered_ = true;
+    take_nodes_away(kMoreNodes);
+    begin_nodes(0);
+  }
+}
+
+void ResonanceSurface::take_nodes_away(std::size_t nodes) noexcept {
+  frequency_.nodes -= frequency_.half > 0.0 ? nodes / 2 : 0;
+  damping_.nodes -= damping_.half > 0.0 ? nodes : 0;
 }
 
 /// The standard deviation of the energy over the draws, from the first of them.

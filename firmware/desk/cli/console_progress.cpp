@@ -27,6 +27,10 @@ void ConsoleProgress::show(const char* stage, double fraction) noexcept {
     return;
   }
   next_ = now + kInterval;
+  if (!announced_.empty()) {
+    std::fprintf(stderr, "emax: %s\n", announced_.c_str());
+    announced_.clear();
+  }
   const auto elapsed = std::chrono::duration_cast<std::chrono::seconds>(now - start_).count();
   const int percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
   char line[79];

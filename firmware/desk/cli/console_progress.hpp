@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 namespace emax::desk {
 
@@ -15,6 +16,10 @@ class ConsoleProgress final {
   ConsoleProgress& operator=(const ConsoleProgress&) = delete;
   ~ConsoleProgress() { erase(); }
 
+  /// What is known before the long work: a line of its own that stays, above the first that is
+  /// shown. Work that ends at once never shows it.
+  void announce(const std::string& line) { announced_ = line; }
+
   /// May be called as often as one likes: the line changes ten times a second at most.
   ///
   /// @param[in] fraction Of the stage, 0 to 1.
@@ -26,6 +31,7 @@ class ConsoleProgress final {
 
   Clock::time_point start_;
   Clock::time_point next_;
+  std::string announced_;
   std::size_t shown_ = 0;  // Characters of the line on the screen.
   bool is_terminal_;
 };

@@ -119,7 +119,13 @@ Problem check_given_damping(const app::EvaluationResults& evaluation, const Repo
   app::TextWriter out(sink);
   out.text("--damping: the points say beta = ").general(fit.model.damping, 4).text(" with U = ");
   out.general(2.0 * fit.u_damping, 3);
-  out.text(" (k = 2); expected a damping that they leave open, or no --damping");
+  const FitJudgement& judgement = evaluation.judgement;
+  if (judgement.determined == Determined::kAllButDamping) {
+    out.text(" (k = 2); expected ").general(judgement.damping_low, 3).text(" to ");
+    out.general(judgement.damping_high, 3).text(", which they leave open, or no --damping");
+  } else {
+    out.text(" (k = 2); they determine it: expected no --damping");
+  }
   return bad_input(sink.text());
 }
 

@@ -47,6 +47,29 @@ struct Results {
   const app::ReportContext& context;
 };
 
+// For who waits: what the points say, which takes no time.
+std::string words_of_fit(const app::EvaluationResults& evaluation) {
+  if (!evaluation.has_fit()) {
+    return "";
+  }
+  const Accelerometer& device = evaluation.device.estimate;
+  const WlspFit& fit = evaluation.fit.result();
+  StringSink sink;
+  app::TextWriter out(sink);
+  out.text("fit: S = ").general(device.sensitivity, 5).text(" V/(m/s^2), f0 = ");
+  out.general(device.natural_frequency_hz, 5).text(" Hz, beta = ").general(device.damping, 4);
+  if (evaluation.is_damping_open()) {
+    out.text(", which the points leave open up to ").general(evaluation.judgement.damping_high, 3);
+  }
+  if (fit.dof > 0) {
+    out.text("; chi2/dof = ").general(fit.chi2 / fit.dof, 4);
+    const bool warns = fit.chi2 / fit.dof > app::reduced_chi_square_limit(fit.dof);
+    out.text(warns ? ", which is too large" : "");
+  }
+  out.text(". The figures follow");
+  return sink.text();
+}
+
 // Begins with what there is to begin with: a bench, a device or points.
 Problem start(const ReportOptions& options, BenchJob& job, ImportedPoints& imported,
               ConsoleProgress& progress) {
@@ -135,6 +158,7 @@ Problem work(const ReportOptions& options, BenchJob& job, ImportedPoints& import
   ConsoleProgress progress;
   Problem problem = start(options, job, imported, progress);
   if (!problem) {
+    progress.announce(words_of_fit(sequencer.evaluation()));
     problem = job.run(progress);
   }
   if (!problem && sequencer.failure()) {

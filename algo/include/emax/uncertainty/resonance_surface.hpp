@@ -23,7 +23,9 @@ namespace emax {
 /// Its misfit is measured at draws: at kChecks of them against that energy, and at kFullChecks of
 /// those against a whole search too, whichever is larger. It is accepted up to kAccepted of the
 /// standard deviation of E over the draws, tries a higher degree from kGood on, and else has
-/// failed. What lies outside the nodes is refined.
+/// failed. Where the higher degree is not accepted and the first one was, the first one stays: what
+/// is not smooth in the energies themselves no degree follows. What lies outside the nodes is
+/// refined.
 ///
 /// Cost: 64 refinements for 8 nodes of the damping and 4 of f0, 12 checks of two refinements, and 2
 /// searches; then some 150 ns on a PC for each draw. 2.5 KiB.
@@ -74,6 +76,8 @@ class ResonanceSurface {
 
   void lay_out(const DeviceDraws& draws, double duration_s) noexcept;
   void begin_nodes(std::size_t more) noexcept;
+  void take_nodes_away(std::size_t nodes) noexcept;
+  void end_nodes() noexcept;
   double frequency_point(const Accelerometer& device) const noexcept;
   double damping_point(const Accelerometer& device) const noexcept;
   void step_node(EnergyBranches& branches, GridWorkspace& workspace) noexcept;
@@ -91,12 +95,15 @@ class ResonanceSurface {
   double misfit_ = 0.0;
   double largest_error_ = 0.0;
   double rough_part_ = 0.0;
+  double first_misfit_ = 0.0;  // Of the first degree, where a higher one has been tried.
+  double first_rough_part_ = 0.0;
   // Of T_i(f0) T_j(beta), j running first: of ln E at the estimate's S, and of d ln E/d ln S.
   double logarithm_[kMostNodes * kMostNodes] = {};
   double power_[kMostNodes * kMostNodes] = {};
   std::size_t point_ = 0;  // The node or check that comes next.
   bool is_box_ = false;
   bool is_raised_ = false;
+  bool is_lowered_ = false;  // Back to the first degree.
   Phase phase_ = Phase::kFailed;
 };
 
