@@ -261,7 +261,7 @@ class TablesOfPiezos(Tables, ProgramTest):
         # Beyond what the points leave open, where they determine it, and where it is of no use.
         open_words = "with U = 0.0268 (k = 2); expected 0.0001 to 0.0168, which they leave open, or no --damping"
         for name, damping, words in [("piezo_00.csv", "0.3", f"the points say beta = -0.009925 {open_words}"),
-                                     ("piezo_00.csv", "0.0169", open_words),
+                                     ("piezo_00.csv", "0.017", open_words),
                                      ("plain.csv", "0.3", "the points say beta = 0.3164 with U = 0.00193 (k = 2); they "
                                                           "determine it: expected no --damping"),
                                      ("handheld_160hz.csv", "0.3", "determine the sensitivity alone")]:
@@ -304,7 +304,15 @@ class TablesOfPiezos(Tables, ProgramTest):
             result = self.run_program("report", "--points", table, *QUICK)
             self.assertEqual(result.returncode, 0)
             self.assert_one_line(result.stderr, f"{table}: ", words)
-            self.assertIn(words, " ".join(result.stdout.decode().split()))
+            text = " ".join(result.stdout.decode().split())
+            self.assertIn(words, text)
+            # It counts as a warning, beside each figure, too.
+            self.assertRegex(text, "WARNING: (No unit of the amplitude|The uncertainties of the amplitude)")
+            self.assertRegex(text, r"In band, constant delay taken out \* ")
+            self.assertRegex(text, r"\* There is a warning below, on: units[.,]")
+            warnings = json.loads(self.run_program("report", "--points", table, *QUICK, "--json").stdout)["warnings"]
+            self.assertEqual([w["about"] for w in warnings][0], "units")
+            self.assertIn(words, warnings[0]["text"])
         # Nothing is asked where the unit is named.
         named = self.write(["f_hz,amplitude [mV/g],phase_deg,u_amplitude,u_phase_deg", *mv_per_g])
         self.succeed("report", "--points", named, *QUICK)

@@ -430,6 +430,7 @@ Problem prove_corners(EnergyCertificate& certificate, BoxProof& box) {
 struct CertifyResult {
   const app::EvaluationResults* evaluation = nullptr;
   std::string cause;  ///< Why its points do not fit, if anybody knows.
+  std::string doubt;  ///< Of the units of its table, if any.
   ProvenEnergy proven;
   double quick_bound_v2s = 0.0;  // That of emax report.
   double seconds = 0.0;
@@ -438,6 +439,16 @@ struct CertifyResult {
 
   double bound_v2s() const { return std::min(proven.bound_v2s(), quick_bound_v2s); }
   double gap() const { return bound_v2s() / proven.energy_v2s - 1.0; }
+
+  // What warnings depend on beside the evaluation.
+  app::ReportContext context() const {
+    app::ReportContext context;
+    context.doubt = doubt.empty() ? nullptr : doubt.c_str();
+    return context;
+  }
+  const char* words_on(app::Warning warning) const {
+    return warning == app::Warning::kUnits ? doubt.c_str() : words_of(warning, *evaluation);
+  }
 };
 
 std::string words_on_time(const CertifyResult& result) {
@@ -467,9 +478,9 @@ void write_fit_json(const CertifyResult& result, app::TextWriter& out) {
     separator = ", ";
   }
   for (const app::Warning warning : app::kWarnings) {
-    if (holds(warning, evaluation, {})) {
+    if (holds(warning, evaluation, result.context())) {
       out.text(separator).text("{\"about\": \"").text(about(warning));
-      out.text("\", \"text\": \"").text(words_of(warning, evaluation)).text("\"");
+      out.text("\", \"text\": \"").text(result.words_on(warning)).text("\"");
       const double least_s = least_time_s(warning, evaluation);
       if (least_s > 0.0) {
         out.text(", \"least_time_s\": ").exact(least_s);
@@ -507,9 +518,8 @@ void write_warning(const std::string& words, app::TextWriter& out) {
 void write_warnings(const CertifyResult& result, app::TextWriter& out) {
   const app::EvaluationResults& evaluation = *result.evaluation;
   for (const app::Warning warning : app::kWarnings) {
-    if (holds(warning, evaluation, {})) {
-      write_warning(sentence_of(words_of(warning, evaluation), least_time_s(warning, evaluation)),
-                    out);
+    if (holds(warning, evaluation, result.context())) {
+      write_warning(sentence_of(result.words_on(warning), least_time_s(warning, evaluation)), out);
     }
   }
   if (!result.cause.empty()) {
@@ -689,7 +699,8 @@ Problem run_certify(Span<const std::string_view> arguments) {
   result.evaluation = &evaluation;
   result.default_time_s = default_s;
   if (evaluation.source == app::Source::kPoints) {
-    result.cause = cause_of_table(evaluation.fit, imported);
+    result.cause = cause_of(evaluation.fit, imported.names_phase_unit);
+    result.doubt = imported.doubt;
   }
   result.proven.box = box.get();
   result.proven.model = &model;

@@ -16,10 +16,11 @@ namespace {
 using app::Warning;
 
 constexpr Warning kMarking[] = {
-    Warning::kFit,         Warning::kOpenDamping, Warning::kDisagreement,  Warning::kLowFrequency,
-    Warning::kShortTime,   Warning::kShortInBand, Warning::kGuardInBand,   Warning::kGuard,
-    Warning::kCrowded,     Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
-    Warning::kMeasurement, Warning::kEnded,       Warning::kDataSheet,     Warning::kChange};
+    Warning::kUnits,        Warning::kFit,         Warning::kOpenDamping, Warning::kDisagreement,
+    Warning::kLowFrequency, Warning::kShortTime,   Warning::kShortInBand, Warning::kGuardInBand,
+    Warning::kGuard,        Warning::kCrowded,     Warning::kRedrawn,     Warning::kNoUncertainty,
+    Warning::kRough,        Warning::kMeasurement, Warning::kEnded,       Warning::kDataSheet,
+    Warning::kChange};
 
 std::string words_on_open_damping(const app::EvaluationResults& results) {
   StringSink sink;

@@ -173,9 +173,4 @@ std::string cause_of(const Wlsp& fit, bool is_phase_unit_named) {
   return "";
 }
 
-std::string cause_of_table(const Wlsp& fit, const ImportedPoints& imported) {
-  const std::string cause = cause_of(fit, imported.names_phase_unit);
-  return imported.doubt + (imported.doubt.empty() || cause.empty() ? "" : " ") + cause;
-}
-
 }  // namespace emax::desk

@@ -21,7 +21,4 @@ std::string cause_of(const Wlsp& fit, bool is_phase_unit_named);
 /// if more than an eighth of the points, or than four, are off.
 std::string cause_of_measured(const Wlsp& fit);
 
-/// @returns What the reader of the table doubts, and `cause_of()`.
-std::string cause_of_table(const Wlsp& fit, const ImportedPoints& imported);
-
 }  // namespace emax::desk

@@ -383,7 +383,7 @@ Problem run_report(Span<const std::string_view> arguments) {
   const std::string points_name = name_of_input(options.points_path);
   const bool has_table = !options.points_path.empty() && !problem_of_work;
   const bool is_measured = options.measures() && evaluation.has_fit();
-  const std::string cause = has_table     ? cause_of_table(evaluation.fit, imported)
+  const std::string cause = has_table     ? cause_of(evaluation.fit, imported.names_phase_unit)
                             : is_measured ? cause_of_measured(evaluation.fit)
                             : is_sensitivity_alone(evaluation, options)
                                 ? words_on_damping(frequency_by_damping(imported.points))
@@ -395,6 +395,7 @@ Problem run_report(Span<const std::string_view> arguments) {
                                 options.in_g,
                                 or_null(cause),
                                 or_null(imported.understanding)};
+  context.doubt = or_null(imported.doubt);
   const FigureMark mark = problem_of_work ? FigureMark{} : mark_of_figures(evaluation, context);
   context.mark = or_null(mark.words);
   context.marked = mark.rows;

@@ -373,6 +373,7 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
   write_correlations(results, out);
   write_fit_notes(results, out);
   write_fit_warning(fit, context.cause, out);
+  write_doubt(context.doubt, out);
   write_large_residuals(results.fit, out);
 }
 

@@ -79,7 +79,9 @@ void write_low_frequency(const EvaluationResults& results, ReportWriter& out) no
 void write_cause(const char* start, const char* cause, ReportWriter& out) noexcept {
   constexpr std::size_t kMaxLine = 100;
   constexpr std::size_t kIndent = 2;
-  out.part(*start == '\0' ? ReportPart::kText : ReportPart::kNote);
+  out.part(*start == '\0'  ? ReportPart::kText
+           : *start == 'N' ? ReportPart::kNote
+                           : ReportPart::kWarning);
   std::size_t column = 0;
   while (*cause != '\0') {
     std::size_t length = 0;
@@ -98,6 +100,13 @@ void write_cause(const char* start, const char* cause, ReportWriter& out) noexce
     cause += cause[length] == ' ' ? length + 1 : length;
   }
   out.line();
+}
+
+void write_doubt(const char* doubt, ReportWriter& out) noexcept {
+  if (doubt != nullptr) {
+    out.line();
+    write_cause("WARNING: ", doubt, out);
+  }
 }
 
 void write_fit_notes(const EvaluationResults& results, ReportWriter& out) noexcept {
@@ -150,6 +159,7 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
     writer.text(" degrees of freedom, chi2/dof = ").general(fit.chi2 / fit.dof, 4).line();
     write_fit_warning(fit, context.cause, writer);
   }
+  write_doubt(context.doubt, writer);
   writer.line();
   writer.part(ReportPart::kWarning);
   writer.text(

@@ -462,7 +462,9 @@ void write_warning(const char* about, const char* words, double least_s,
 void write_if_due(Warning warning, const EvaluationResults& results, const ReportContext& context,
                   JsonWriter& json) noexcept {
   if (holds(warning, results, context)) {
-    write_warning(about(warning), words_of(warning, results), least_time_s(warning, results), json);
+    const char* const words =
+        warning == Warning::kUnits ? context.doubt : words_of(warning, results);
+    write_warning(about(warning), words, least_time_s(warning, results), json);
   }
 }
 

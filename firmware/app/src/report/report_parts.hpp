@@ -77,8 +77,11 @@ void write_fit_notes(const EvaluationResults& results, ReportWriter& out) noexce
 /// @param[in] cause Null if nobody knows.
 void write_fit_warning(const WlspFit& fit, const char* cause, ReportWriter& out) noexcept;
 
-/// Why the points do not fit, in lines; a note where `start` says so.
+/// Why the points do not fit, in lines; a note or a warning where `start` says so.
 void write_cause(const char* start, const char* cause, ReportWriter& out) noexcept;
+
+/// What is unlikely in units that a table does not name; null for nothing.
+void write_doubt(const char* doubt, ReportWriter& out) noexcept;
 
 /// The section in place of Monte Carlo where the damping is open.
 void write_cut_range(const EvaluationResults& results, ReportWriter& out) noexcept;

@@ -95,6 +95,8 @@ bool holds(Warning warning, const EvaluationResults& results,
            const ReportContext& context) noexcept {
   const EnergyUncertainty& known = results.uncertainty;
   switch (warning) {
+    case Warning::kUnits:
+      return context.doubt != nullptr;
     case Warning::kFit:
       return fit_warns(results);
     case Warning::kOpenDamping:
@@ -140,6 +142,8 @@ bool holds(Warning warning, const EvaluationResults& results,
 
 const char* about(Warning warning) noexcept {
   switch (warning) {
+    case Warning::kUnits:
+      return "units";
     case Warning::kFit:
       return "fit";
     case Warning::kOpenDamping:
@@ -175,6 +179,7 @@ const char* about(Warning warning) noexcept {
 
 ReportSection place_of(Warning warning) noexcept {
   switch (warning) {
+    case Warning::kUnits:
     case Warning::kFit:
     case Warning::kOpenDamping:
     case Warning::kOnlyS:
@@ -246,6 +251,9 @@ std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
 
 const char* words_of(Warning warning, const EvaluationResults& results) noexcept {
   switch (warning) {
+    case Warning::kUnits:
+      return "units that the table does not name were assumed, and its numbers are unlikely in "
+             "them";
     case Warning::kFit:
       return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
              "order over these frequencies, or the stated uncertainties are too small";

@@ -55,6 +55,8 @@ struct ReportContext {
   bool rounds_to_u = false;  ///< Two digits of U and values to match, as on a certificate.
   /// Settling time of the error in band that leads the figures; 0 for none, or if nobody knows.
   double leading_settling_s = 0.0;
+  /// What is unlikely in units that a table does not name, in sentences; null for nothing.
+  const char* doubt = nullptr;
 };
 
 /// m/s^2, exactly (ISO 80000-3).

@@ -31,16 +31,17 @@ enum class Warning : std::uint8_t {
   kEnded,          ///< A fault has ended the sweep.
   kDataSheet,      ///< The sensitivity at the check frequency is 20 % off the data sheet's.
   kBeyondTable,    ///< The sweep has frequencies beyond the ends of the reference's table.
+  kUnits,          ///< A table names no units, and what was taken is unlikely.
   kChange,         ///< The check frequency's ratio has changed by 1 %, beyond its noise.
 };
 
 inline constexpr Warning kWarnings[] = {
-    Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,         Warning::kDisagreement,
-    Warning::kLowFrequency,  Warning::kShortTime,   Warning::kShortInBand,   Warning::kFewTrials,
-    Warning::kNotStable,     Warning::kGuard,       Warning::kGuardInBand,   Warning::kCrowded,
-    Warning::kTrialsRedrawn, Warning::kRedrawn,     Warning::kNoUncertainty, Warning::kRough,
-    Warning::kMeasurement,   Warning::kEnded,       Warning::kDataSheet,     Warning::kBeyondTable,
-    Warning::kChange,
+    Warning::kUnits,        Warning::kFit,           Warning::kOpenDamping, Warning::kOnlyS,
+    Warning::kDisagreement, Warning::kLowFrequency,  Warning::kShortTime,   Warning::kShortInBand,
+    Warning::kFewTrials,    Warning::kNotStable,     Warning::kGuard,       Warning::kGuardInBand,
+    Warning::kCrowded,      Warning::kTrialsRedrawn, Warning::kRedrawn,     Warning::kNoUncertainty,
+    Warning::kRough,        Warning::kMeasurement,   Warning::kEnded,       Warning::kDataSheet,
+    Warning::kBeyondTable,  Warning::kChange,
 };
 
 /// @returns Whether this has to be said of these results. The report then has a part
@@ -53,8 +54,8 @@ bool holds(Warning warning, const EvaluationResults& results,
 bool contradicts(Warning warning, const SweepResults& sweep) noexcept;
 const char* words_of_contradiction(Warning warning) noexcept;
 
-/// @returns "fit", "damping", "fit_draws", "energy", "band", "monte_carlo", "uncertainty" or
-/// "measurement".
+/// @returns "units", "fit", "damping", "fit_draws", "energy", "band", "monte_carlo", "uncertainty"
+/// or "measurement".
 const char* about(Warning warning) noexcept;
 
 /// @returns The T in s that a warning of a short one asks for, the settling time; 0 for all others,
