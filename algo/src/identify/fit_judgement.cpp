@@ -2,6 +2,7 @@
 #include "emax/identify/fit_judgement.hpp"
 
 #include "emax/base/elementary.hpp"
+#include "emax/base/units.hpp"
 
 namespace emax {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kLeastShare = 0.5;
 
 bool is_sensitivity_alone(const WlspFit& fit) noexcept {
   return fit.u_mu[0] > 0.0 && fit.mu[0] > kCoverage * fit.u_mu[0] &&
-         abs(fit.mu[2]) <= kCoverage * fit.u_mu[2];
+         fit.mu[2] <= kCoverage * fit.u_mu[2] && fit.mu[2] >= -kImpossible * fit.u_mu[2];
 }
 
 FitJudgement sensitivity_alone(const WlspFit& fit) noexcept {
@@ -23,6 +24,10 @@ FitJudgement sensitivity_alone(const WlspFit& fit) noexcept {
   judgement.determined = Determined::kSensitivity;
   judgement.device.sensitivity = 1.0 / fit.mu[0];
   judgement.u_sensitivity = fit.u_mu[0] / (fit.mu[0] * fit.mu[0]);
+  if (fit.mu[2] != 0.0) {  // Magnitudes alone leave it at zero, as they do not tell it from beta.
+    const double mu3 = fit.mu[2] > 0.0 ? fit.mu[2] : 0.0;
+    judgement.frequency_low_hz = sqrt(fit.mu[0] / (mu3 + kCoverage * fit.u_mu[2])) / kTwoPi;
+  }
   return judgement;
 }
 
@@ -36,6 +41,7 @@ FitJudgement whole(const WlspFit& fit) noexcept {
           fit.u_sensitivity,
           fit.u_natural_frequency_hz,
           fit.u_damping,
+          0.0,
           0.0,
           0.0,
           0.0,
@@ -80,11 +86,16 @@ FitJudgement constrained(const WlspFit& fit) noexcept {
 }  // namespace
 
 FitJudgement judge(const WlspFit& fit) noexcept {
-  if (fit.status != Status::kOk && fit.status != Status::kNotPhysical) {
+  // Where mu3 may be 0, f0 may be anything above, and so may a damping: it means nothing then.
+  const bool is_overdamped = fit.status == Status::kOverdamped;
+  if (fit.status != Status::kOk && fit.status != Status::kNotPhysical && !is_overdamped) {
     return {};
   }
   if (is_sensitivity_alone(fit)) {
     return sensitivity_alone(fit);
+  }
+  if (is_overdamped) {
+    return {};
   }
   if (!(fit.mu[0] > 0.0) || !(fit.mu[2] > 0.0) || !(fit.u_sensitivity > 0.0)) {
     return {};

@@ -3,6 +3,7 @@
 #include <complex>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 #include "emax/identify/fit_judgement.hpp"
 #include "emax/identify/frequency_response.hpp"
@@ -300,6 +301,63 @@ TEST(Judgement, PointsFarBelowTheResonanceLeaveTheSensitivityAlone) {
   EXPECT_EQ(judgement.determined, Determined::kSensitivity);
   EXPECT_NEAR(judgement.device.sensitivity, 0.0102, 1e-7);
   EXPECT_GT(judgement.u_sensitivity, 0.0);
+}
+
+// 1/(S w0^2) in units of its u; all else is the fit of a sensor with f0 = 30 kHz to 3 kHz.
+WlspFit fit_by_mu3(double mu3_in_u, Status status) {
+  WlspFit fit;
+  fit.status = status;
+  fit.mu[0] = 98.0;
+  fit.mu[1] = 1.5e-4;
+  fit.mu[2] = mu3_in_u * 1.2e-9;
+  fit.u_mu[0] = 0.12;
+  fit.u_mu[1] = 1.4e-5;
+  fit.u_mu[2] = 1.2e-9;
+  return fit;
+}
+
+TEST(Judgement, WhereF0IsOpenNoDampingIsReadFromIt) {
+  constexpr double kTwoPi = 6.283185307179586;
+  const struct {
+    double mu3_in_u;
+    Status status;
+    double most_in_u;  // Of 1/(S w0^2), by 2 u.
+  } cases[] = {
+      {0.1, Status::kOverdamped, 2.1},   {1.9, Status::kOverdamped, 3.9},
+      {-1.9, Status::kNotPhysical, 2.0}, {-2.5, Status::kNotPhysical, 2.0},
+      {-3.9, Status::kNotPhysical, 2.0}, {1.0, Status::kOk, 3.0},
+  };
+  for (const auto& each : cases) {
+    const FitJudgement judgement = judge(fit_by_mu3(each.mu3_in_u, each.status));
+    EXPECT_EQ(judgement.determined, Determined::kSensitivity) << each.mu3_in_u;
+    EXPECT_DOUBLE_EQ(judgement.device.sensitivity, 1.0 / 98.0);
+    EXPECT_NEAR(judgement.frequency_low_hz, std::sqrt(98.0 / (each.most_in_u * 1.2e-9)) / kTwoPi,
+                1e-6);
+  }
+  // No scatter: a mu3 as far below 0 is that of other phases or units.
+  for (const auto& [mu3_in_u, status] :
+       {std::pair(-4.1, Status::kNotPhysical), std::pair(2.1, Status::kOverdamped)}) {
+    EXPECT_EQ(judge(fit_by_mu3(mu3_in_u, status)).determined, Determined::kNothing) << mu3_in_u;
+  }
+}
+
+TEST(Judgement, EveryDrawFarBelowTheResonanceSaysSomething) {
+  Points far;
+  far.count = 20;
+  far.scatter = 1.0;
+  for (const double damping : {0.01, 0.3, 0.6}) {
+    for (const double part : {0.05, 0.1}) {
+      far.device = {0.0102, 30000.0, damping};
+      far.lowest_hz = part * 300.0;
+      far.highest_hz = part * 30000.0;
+      for (unsigned seed = 1; seed <= 300; ++seed) {
+        Wlsp fit;
+        (void)fit.fit(response_of(far, seed));
+        EXPECT_NE(judge(fit.result()).determined, Determined::kNothing)
+            << damping << " " << part << " " << seed;
+      }
+    }
+  }
 }
 
 TEST(Judgement, ADampingThatIsNegativeIsNoDevice) {

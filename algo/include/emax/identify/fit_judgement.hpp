@@ -29,15 +29,18 @@ struct FitJudgement {
   double damping_high = 0.0;  ///< have, from the least one on.
   double sensitivity_slope = 0.0;  ///< With kAllButDamping: how S and f0 move with the damping.
   double frequency_slope_hz = 0.0;
+  /// With kSensitivity: f0 is above, by mu3 + 2 u(mu3) or by 2 u(mu3) if mu3 is negative; 0 where
+  /// nobody knows.
+  double frequency_low_hz = 0.0;
 };
 
 /// The largest damping that stands for "below 1" where a range is cut.
 inline constexpr double kMaxCutDamping = 0.999;
 
-/// Judges by two standard uncertainties: f0 is undetermined where mu3 - 2 u(mu3) <= 0 <= mu3 + 2
-/// u(mu3), the damping where beta - 2 u(beta) < kMinDamping <= beta + 4 u(beta); where only
-/// magnitudes are known, by beta^2 in place of beta. Its range ends at beta + 2 u(beta), and at
-/// kMinDamping + u(beta)/2 at least.
+/// Judges by two standard uncertainties: f0 is undetermined where mu3 - 2 u(mu3) <= 0 <= mu3 + 4
+/// u(mu3), whatever the damping is then, and the damping where beta - 2 u(beta) < kMinDamping <=
+/// beta + 4 u(beta); where only magnitudes are known, by beta^2 in place of beta. Its range ends at
+/// beta + 2 u(beta), and at kMinDamping + u(beta)/2 at least.
 ///
 /// @param[in] fit The result of `Wlsp::fit()`, whatever its status.
 FitJudgement judge(const WlspFit& fit) noexcept;

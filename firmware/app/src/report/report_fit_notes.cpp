@@ -152,7 +152,15 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
   writer.label("S").fixed(judgement.device.sensitivity, decimals).text(" V/(m/s^2), u = ");
   writer.fixed(judgement.u_sensitivity, decimals).text(", U = ");
   writer.fixed(kCoverageFactor * judgement.u_sensitivity, decimals).text(" (k = 2)").line();
-  writer.label("f0").text("not determined").line();
+  writer.label("f0").text("not determined");
+  const double above_hz = judgement.frequency_low_hz;
+  if (above_hz > 0.0) {
+    constexpr double kWhole = 100.0;
+    writer.text(", above ");
+    above_hz < kWhole ? writer.general(above_hz, 3) : writer.fixed(floor(above_hz), 0);
+    writer.text(" Hz by 2u");
+  }
+  writer.line();
   writer.label("beta").text("not determined").line();
   if (fit.dof > 0 && fit.chi2 > 0.0) {
     writer.label("chi-square").general(fit.chi2, 5).text(" with ").integer(fit.dof);

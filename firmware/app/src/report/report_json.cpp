@@ -539,6 +539,9 @@ void write_fit(const EvaluationResults& results, const ReportContext& context,
   write_number_or_null("beta", fit.u_sensitivity > 0.0, fit.model.damping, json);
   write_number_or_null("ubeta", fit.u_sensitivity > 0.0, fit.u_damping, json);
   json.integer("unknown_phases", fit.unknown_phases);
+  if (judgement.frequency_low_hz > 0.0) {
+    json.number("f0_above", judgement.frequency_low_hz);
+  }
   if (context.read_as != nullptr) {
     json.words("read_as", context.read_as);
   }
