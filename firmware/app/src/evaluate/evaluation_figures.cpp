@@ -161,7 +161,7 @@ double Evaluation::progress_of_figure() const noexcept {
     case Phase::kGuard:
       return work_.guard_.progress();
     case Phase::kRange:
-      return work_.part_.figure_range.range.progress();
+      return kHasFigureRanges ? work_.part_.figure_range.range.progress() : 1.0;
     case Phase::kEnd:
       break;
   }
@@ -248,10 +248,13 @@ void Evaluation::end_figure_energy(bool is_proven) noexcept {
 
 /// Whether the dampings that the points leave open are gone through for each figure.
 bool Evaluation::wants_figure_range() const noexcept {
-  return work_.goal_ == Goal::kReport && results_.is_damping_open();
+  return kHasFigureRanges && work_.goal_ == Goal::kReport && results_.is_damping_open();
 }
 
 void Evaluation::begin_figure_range() noexcept {
+  if constexpr (!kHasFigureRanges) {
+    return;
+  }
   auto* const part = new (&work_.part_.figure_range) EvaluationWorkspace::FigureRangePart;
   part->range.start(
       results_.judgement,
@@ -261,6 +264,9 @@ void Evaluation::begin_figure_range() noexcept {
 }
 
 void Evaluation::step_figure_range() noexcept {
+  if constexpr (!kHasFigureRanges) {
+    return;
+  }
   FigureRange& range = work_.part_.figure_range.range;
   range.step(work_.search_, work_.grid_);
   if (!range.done()) {

@@ -1,6 +1,7 @@
 // What the results say of themselves: whose they are, and what they hold for.
 #include "emax/app/evaluate/evaluation_results.hpp"
 
+#include "emax/app/evaluate/figure_range.hpp"
 #include "emax/base/elementary.hpp"
 
 #include "evaluation_checks.hpp"
@@ -136,7 +137,9 @@ bool EvaluationResults::has_uncertainties() const noexcept {
 }
 
 bool EvaluationResults::has_figure_ranges() const noexcept {
-  return (!band.exists() || band.is_range_done) && (!matched.exists() || matched.is_range_done);
+  const bool has_band = !band.exists() || band.is_range_done;
+  const bool has_matched = !matched.exists() || matched.is_range_done;
+  return !kHasFigureRanges || (has_band && has_matched);
 }
 
 void EvaluationResults::drop_trials() noexcept {

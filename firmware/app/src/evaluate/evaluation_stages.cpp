@@ -84,7 +84,7 @@ double Evaluation::progress_of_stage() const noexcept {
       return work_.part_.bound.bound.progress();
     case Stage::kPrediction:
       return !results_.is_damping_open() ? work_.part_.trial.trials.progress()
-             : results_.settings.criterion == Criterion::kInBandError
+             : kHasFigureRanges && results_.settings.criterion == Criterion::kInBandError
                  ? work_.part_.figure_range.range.progress()
                  : work_.part_.cut.range.progress();
     case Stage::kAdaptive:
@@ -306,7 +306,7 @@ void Evaluation::begin_cut_range() noexcept {
   const Settings& settings = results_.settings;
   const SearchSettings search = search_settings(settings, settings.duration_s);
   results_.stage = Stage::kPrediction;
-  if (settings.criterion == Criterion::kInBandError) {
+  if (kHasFigureRanges && settings.criterion == Criterion::kInBandError) {
     auto* const part = new (&work_.part_.figure_range) EvaluationWorkspace::FigureRangePart;
     part->range.start(results_.judgement,
                       {reference_filter(results_), measure_of(settings), results_.maximum.energy},
@@ -319,7 +319,7 @@ void Evaluation::begin_cut_range() noexcept {
 }
 
 void Evaluation::step_cut_range() noexcept {
-  if (results_.settings.criterion == Criterion::kInBandError) {
+  if (kHasFigureRanges && results_.settings.criterion == Criterion::kInBandError) {
     step_cut_range(work_.part_.figure_range.range);
   } else {
     step_cut_range(work_.part_.cut.range);

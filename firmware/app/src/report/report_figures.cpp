@@ -1,6 +1,7 @@
 // Figures in percent of S a, with as many digits as their uncertainty carries.
 #include "report_figures.hpp"
 
+#include "emax/app/evaluate/figure_range.hpp"
 #include "emax/app/report/report_warnings.hpp"
 #include "emax/base/elementary.hpp"
 
@@ -140,12 +141,12 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
   return {name,
           is_marked,
           percent,
-          has_u || figure.has_range,
+          has_u || (kHasFigureRanges && figure.has_range),
           has_u,
           figure.uncertainty.expanded_percent(),
           figure.has_bound,
           results.percent_of(figure.bound_v2s),
-          figure.has_range || results.is_one_sided(figure),
+          (kHasFigureRanges && figure.has_range) || results.is_one_sided(figure),
           interval};
 }
 
@@ -161,7 +162,7 @@ bool write_papers_rows(const EvaluationResults& results, std::uint32_t marked,
   if (criterion != Criterion::kInBandError) {
     const EnergyUncertainty& known = results.uncertainty;
     const bool has_u = known.exists();
-    const bool has_range = results.has_cut_range && results.cut_low_v2s > 0.0;
+    const bool has_range = kHasFigureRanges && results.has_cut_range && results.cut_low_v2s > 0.0;
     const bool is_error = criterion == Criterion::kIntegralSquareError;
     const double percent = results.percent_of(energy);
     const double expanded = known.expanded_percent();
@@ -277,7 +278,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
   if (known.exists()) {
     write_known(results, known, figure.energy_v2s, out);
   }
-  if (figure.is_range_done) {
+  if (kHasFigureRanges && figure.is_range_done) {
     write_range(results, figure, out);
   }
 }
@@ -396,7 +397,7 @@ void write_figures(const EvaluationResults& results, const ReportContext& contex
           "  with S = G, the filter's gain")
       .text(is_given ? ", but not with a delay given" : "")
       .text(".\n  None exceeds: proven at the estimates.\n");
-  if (is_one_sided && results.is_damping_open()) {
+  if (kHasFigureRanges && is_one_sided && results.is_damping_open()) {
     out.text("  x to y: over the dampings that the points leave open, with f0 +- 2u.\n");
   } else if (is_one_sided) {
     out.text("  x to y: where the figure is with ");

@@ -1,6 +1,7 @@
 // results.json.
 #include "emax/app/base/json_writer.hpp"
 #include "emax/app/base/version.hpp"
+#include "emax/app/evaluate/figure_range.hpp"
 #include "emax/app/report/report.hpp"
 #include "emax/app/report/report_warnings.hpp"
 #include "emax/app/settings/setting_field.hpp"
@@ -376,7 +377,7 @@ void write_figure(const EvaluationResults& results, const FigureResults& figure,
     json.number(nullptr, time_s);
   }
   json.close_row();
-  if (figure.has_range) {
+  if (kHasFigureRanges && figure.has_range) {
     write_interval_in_percent("range_percent", results, {figure.least_v2s, figure.greatest_v2s},
                               json);
   }

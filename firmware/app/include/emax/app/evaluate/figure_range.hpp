@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "emax/base/capacity.hpp"
 #include "emax/base/status.hpp"
 #include "emax/energy/energy_search.hpp"
 #include "emax/energy/grid_workspace.hpp"
@@ -13,6 +14,9 @@
 #include "emax/model/reference_filter.hpp"
 
 namespace emax::app {
+
+/// Whether an image has them: where flash is scarce a report has no ranges of the in-band errors.
+inline constexpr bool kHasFigureRanges = !kHasDefaultCapacities;
 
 /// Searches over the range of the damping that `judge()` has cut to what a device may be, with f0
 /// as it follows from the damping, +- 2u: the least and the greatest of the energies that devices
