@@ -252,12 +252,12 @@ void Sweep::judge_first(const Reading& reference, const Reading& device) noexcep
 // @returns Whether the channels contradict the data sheet as only the drive's rise would answer:
 // the device reads more than the reference lets it.
 bool Sweep::look_for_exchange(const Reading& reference, const Reading& device) noexcept {
-  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
-  const double most_v = kPlausibleFactor * sheet_v_per_v;
-  const double least_v = sheet_v_per_v / kPlausibleFactor;
+  const double sheet = sheet_v_per_v();
+  const double most_v = kPlausibleFactor * sheet;
+  const double least_v = sheet / kPlausibleFactor;
   const double reference_most_v = reference.most_v();
   const double device_most_v = device.most_v();
-  const bool has_sheet = sheet_v_per_v > 0.0;
+  const bool has_sheet = sheet > 0.0;
   const bool is_excluded = has_sheet && (reference.least_v() > most_v * device_most_v ||
                                          reference_most_v < least_v * device.least_v());
   work_.exchanged_share_ = is_excluded || reference.fit.amplitude_v > device_most_v
@@ -271,11 +271,11 @@ bool Sweep::look_for_exchange(const Reading& reference, const Reading& device) n
 //
 // @returns That drive; infinity where the device is seen, or nothing is known of it.
 double Sweep::seen_v(const Reading& reference, const Reading& device) const noexcept {
-  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
-  if (results_.stage != SweepStage::kCheckBefore || !device.is_weak() || !(sheet_v_per_v > 0.0)) {
+  const double sheet = sheet_v_per_v();
+  if (results_.stage != SweepStage::kCheckBefore || !device.is_weak() || !(sheet > 0.0)) {
     return std::numeric_limits<double>::infinity();
   }
-  return kPlausibleFactor * device.most_v() / (sheet_v_per_v * reference.least_v()) *
+  return kPlausibleFactor * device.most_v() / (sheet * reference.least_v()) *
          work_.drive_.amplitude_v();
 }
 
@@ -333,11 +333,8 @@ bool Sweep::has_few_steps() const noexcept {
 Status Sweep::status_of_steps() const noexcept {
   const Reading reference = reading_of(work_.fit_.reference(), results_.inputs.silent_reference);
   const Reading device = reading_of(work_.device_fit(), results_.inputs.silent_device);
-  const double sheet_v_per_v = results_.settings.expected_sensitivity / ratio_factor();
   const bool is_off_sheet =
-      sheet_v_per_v * reference.least_v() > kPlausibleFactor * device.most_v() ||
-      (sheet_v_per_v > 0.0 &&
-       device.least_v() > kPlausibleFactor * sheet_v_per_v * reference.most_v());
+      sheet_v_per_v() * reference.least_v() > kPlausibleFactor * device.most_v();
   return is_off_sheet ? Status::kSwappedChannels : Status::kFewSteps;
 }
 
@@ -542,6 +539,11 @@ Status Sweep::distortion() const noexcept {
   const bool is_of_steps = work_.drive_per_acceleration_ > 0.0 &&
                            work_.drive_.amplitude_v() < kSixOfFive * few_steps_v();
   return is_of_steps ? few_steps() : Status::kDistorted;
+}
+
+// Device's volts over the reference's, by the data sheet; 0 without one.
+double Sweep::sheet_v_per_v() const noexcept {
+  return results_.settings.expected_sensitivity / ratio_factor();
 }
 
 // K over the ratio of the volts.

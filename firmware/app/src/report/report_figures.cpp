@@ -93,7 +93,7 @@ void write_expanded(const Row& row, int decimals, ReportWriter& out) noexcept {
     // Outwards, both in the decimals of the far end; a range in one digit more where there is room.
     constexpr int kMostOfRange = 4;
     const int finer = decimals_of(row.interval.high, kDigitsOfU + 1);
-    const int of_end = !row.has_expanded && finer <= kMostOfRange
+    const int of_end = kHasFigureRanges && !row.has_expanded && finer <= kMostOfRange
                            ? finer
                            : decimals_of(row.interval.high, kDigitsOfU);
     const double low = rounded_down(row.interval.low, of_end);
@@ -136,8 +136,9 @@ Row row_of(const char* name, bool is_marked, const EvaluationResults& results,
   const CoverageInterval interval =
       has_u
           ? results.interval_percent_of(figure.uncertainty.shortest_of_percent(), figure.energy_v2s)
-          : CoverageInterval{results.percent_of(figure.least_v2s),
-                             results.percent_of(figure.greatest_v2s)};
+      : kHasFigureRanges ? CoverageInterval{results.percent_of(figure.least_v2s),
+                                            results.percent_of(figure.greatest_v2s)}
+                         : CoverageInterval{};
   return {name,
           is_marked,
           percent,

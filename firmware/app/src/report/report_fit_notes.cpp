@@ -154,11 +154,8 @@ void write_sensitivity_report(const EvaluationResults& results, const ReportCont
   writer.fixed(kCoverageFactor * judgement.u_sensitivity, decimals).text(" (k = 2)").line();
   writer.label("f0").text("not determined");
   const double above_hz = judgement.frequency_low_hz;
-  if (above_hz > 0.0) {
-    constexpr double kWhole = 100.0;
-    writer.text(", above ");
-    above_hz < kWhole ? writer.general(above_hz, 3) : writer.fixed(floor(above_hz), 0);
-    writer.text(" Hz by 2u");
+  if (above_hz > 1.0) {
+    writer.text(", above ").fixed(floor(above_hz), 0).text(" Hz by 2u");
   }
   writer.line();
   writer.label("beta").text("not determined").line();

@@ -252,8 +252,7 @@ std::size_t disagreeing_parameter(const EvaluationResults& results) noexcept {
 const char* words_of(Warning warning, const EvaluationResults& results) noexcept {
   switch (warning) {
     case Warning::kUnits:
-      return "units that the table does not name were assumed, and its numbers are unlikely in "
-             "them";
+      return "the units assumed are unlikely";
     case Warning::kFit:
       return "chi2/dof is above what one fit in a hundred exceeds: the device is not of second "
              "order over these frequencies, or the stated uncertainties are too small";

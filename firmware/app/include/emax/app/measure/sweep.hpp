@@ -138,6 +138,7 @@ class Sweep {
   double aim_mps2() const noexcept;
   double most_mps2() const noexcept;
   double ratio_factor() const noexcept;
+  double sheet_v_per_v() const noexcept;
   Complex ratio_of(const Complex& reference, const Complex& device) const noexcept;
 
   SweepResults& results_;
