@@ -38,11 +38,7 @@ emax_leave_out(test_sim_noise
 
 # Hundreds of sweeps, and whole evaluations with all their guards.
 emax_leave_out(test_sweep_limit)
-emax_leave_out(test_sweep_faults
-  SweepFaults.AnExchangeAndAnotherFaultAnyTimeWithADeviceOfFewVolts
-  SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitOfAcceleration
-  SweepFaults.AnyTimeOfAnyFaultKeepsTheLimitWithADeviceOfFewVolts
-  SweepFaults.AnyTimesOfAnyTwoFaultsKeepTheLimitOfAcceleration)
+emax_leave_out(test_sweep_faults)
 emax_leave_out(test_sweep
   Sweep.ALevelOfFewStepsIsNamedWithTheLeastLevel
   Sweep.AQuietBenchHasNoFlags
@@ -52,7 +48,9 @@ emax_leave_out(test_sweep
   Sweep.ResonanceThatIsTooSharpIsNamed)
 emax_leave_out(test_evaluation_figures
   EvaluationFigures.DefaultTrendLeavesOutWhatHasNoRoom
-  EvaluationFigures.GuardsEachUncertainty)
+  EvaluationFigures.GuardsEachUncertainty
+  EvaluationFigures.PercentagesAreOfEachTrialsOwnSensitivity
+  EvaluationFigures.RelativeIntervalsAreTheSameFromAStore)
 
 emax_leave_out(test_instrument_work InstrumentSweep.BeginsAnewRightAfterAnAbort)
 emax_leave_out(test_loopback
