@@ -7,9 +7,8 @@
 namespace emax::hal {
 namespace {
 
-// Of a store that has slots: without any, none holds a byte.
 constexpr bool usable(const StoreFormat& format) {
-  return format.unit_bytes >= 1 && format.unit_bytes <= kMaxUnitBytes &&
+  return format.slot_count >= 1 && format.unit_bytes >= 1 && format.unit_bytes <= kMaxUnitBytes &&
          format.slot_bytes >= format.unit_bytes && format.slot_bytes % format.unit_bytes == 0;
 }
 

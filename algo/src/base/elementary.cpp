@@ -334,8 +334,10 @@ ReducedAngle reduce_by_integers(double x) noexcept {
   if ((bits & kSignBit) != 0) {
     quadrant = 0U - quadrant;
   }
-  const int zeros = __builtin_clzll(fraction | 1U);  // At least one, that of the nearer multiple.
-  fraction = (fraction << zeros) | (rest >> (64 - zeros));
+  const int zeros = __builtin_clzll(fraction | 1U);
+  if (zeros != 0) {
+    fraction = (fraction << zeros) | (rest >> (64 - zeros));
+  }
   const std::uint64_t angle = multiply_high(fraction, kHalfPiTimes2To63);  // Times 2^(-63 - zeros).
   const double unit = negative ? -power_of_two(-63 - zeros) : power_of_two(-63 - zeros);
   const double high = static_cast<double>(static_cast<std::int64_t>(angle >> 11)) * (2048.0 * unit);

@@ -39,7 +39,6 @@ struct Compared {
   std::uint32_t beyond = 0;
 };
 
-/// Of a word that has a cell.
 Compared compare(std::size_t word, float limit, Span<const float> product) noexcept {
   constexpr std::uint32_t kHighest = 0x80000000U;
   const auto limit_bits = __builtin_bit_cast(std::uint32_t, limit);
@@ -47,6 +46,9 @@ Compared compare(std::size_t word, float limit, Span<const float> product) noexc
   const std::size_t left = product.size() - first;
   const std::size_t count = left < Signs::kBits ? left : Signs::kBits;
   Compared result;
+  if (count == 0) {  // A shift by all bits of a word is not defined.
+    return result;
+  }
   const float* const end = product.data() + first + count;
   for (const float* value = end - count; value != end; ++value) {
     const auto bits = __builtin_bit_cast(std::uint32_t, *value);

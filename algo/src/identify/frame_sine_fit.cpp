@@ -123,8 +123,7 @@ SineFitResult FrameSineFit::solve(const Channel& channel, const BasisSums& basis
   const double cross = basis.cosine_sine - l10 * basis.sine;
   const double l21 = cross / d1;
   const double d2 = basis.sine2 - l20 * basis.sine - l21 * cross;
-  // Over a period at least the cosine is far from constant, so d1 is of the size of n.
-  if (!(d2 > kDependent * n)) {
+  if (!(d1 > kDependent * n) || !(d2 > kDependent * n)) {
     return result;
   }
   const double z1 = channel.word_cosine - l10 * channel.word;

@@ -106,7 +106,7 @@ void CascadeResponse::take_series(double step_s, double value, Series& series) n
   Chain compared = compared_;
   Chain reference = reference_;
   const bool is_in_band = criterion_ == Criterion::kInBandError;
-  for (std::size_t n = 0;; ++n) {
+  for (std::size_t n = 0; n < kTerms; ++n) {
     const double input = n == 0 ? value : 0.0;
     const double device = sensitivity_ * (is_ideal_ ? input : sensor[0]);
     const double filter = end_of(reference);

@@ -90,9 +90,9 @@ TextWriter& TextWriter::exact(double value) noexcept {
   // With 15 digits trailing zeros are dropped, so fewer digits need no attempt of their own.
   char number[kLongestShortNumber];
   std::size_t length = 0;
-  for (int digits = 15;; ++digits) {
+  for (int digits = 15; digits <= 17; ++digits) {
     length = format_general(value, digits, number);
-    if (digits == 17 || parse_decimal(Span<const char>(number, length)).value == value) {
+    if (parse_decimal(Span<const char>(number, length)).value == value) {
       break;
     }
   }

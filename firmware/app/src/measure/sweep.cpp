@@ -19,11 +19,11 @@ constexpr double kRingingPeriods = 2.0;  // Times what a resonance magnifies by:
 constexpr double kSharpest = 0.002;      // Of 1/K, over that at the check frequency.
 constexpr double kLeastRoom = 1.0 / 24.0;  // Of the level: less is little for converters.
 constexpr double kLeastScale = 1.0 / 16.0;
-constexpr double kFirstDriveShare = 0.01;     // Of the limit, until the shaker is known;
-constexpr double kLittle_mps2 = 1.0;          // a limit below is looked at with few steps.
-constexpr double kLookShare = 0.25;           // Of the drive, where the first look is too much.
-constexpr double kFeeble_mps2_per_v = 400.0;  // A shaker; one that may be livelier than the limit
-constexpr double kSlowRise_s = 2.0;           // over the first drive is looked at slowly.
+constexpr double kFirstDriveShare = 0.01;  // Of the limit, until the shaker is known;
+constexpr double kLittle_mps2 = 1.0;       // a limit below is looked at with few steps.
+constexpr double kLookShare = 0.25;        // Of the drive, where the first look is too much.
+constexpr double kLivelyGain = 400.0;      // Of a shaker, in (m/s^2)/V; the limit over the first
+constexpr double kSlowRise_s = 2.0;        // drive below it, and the first look is slow.
 constexpr std::uint32_t kMostLooks = 6;
 constexpr double kLimitShare = 0.94;      // The level may be off by 5 %, and stays below the limit.
 constexpr double kRoundedSteps = 0.2;     // Of few steps: one.
@@ -376,9 +376,8 @@ double Sweep::rise_s() const noexcept {
     return limit < far * aim_mps2() ? kLeastRise_s + kRisePeriods / work_.target_.frequency_hz
                                     : 0.0;
   }
-  return limit < kFeeble_mps2_per_v * kFirstDriveShare * results_.settings.drive_limit_v
-             ? kSlowRise_s
-             : 0.0;
+  return limit < kLivelyGain * kFirstDriveShare * results_.settings.drive_limit_v ? kSlowRise_s
+                                                                                  : 0.0;
 }
 
 void Sweep::drive_to(double amplitude_v) noexcept {

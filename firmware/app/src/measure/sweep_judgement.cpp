@@ -14,12 +14,13 @@ constexpr double kWeakSigmas = 8.0;
 constexpr double kMostLeak = 0.015;  // Of percent with k = 2: three standard uncertainties.
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
-constexpr double kSurelySeen = 1.5;         // Times where a device is seen.
-constexpr double kBlindShare = 0.1;         // Of the drive limit, while nothing was seen at all,
-constexpr double kBlind_mps2_per_v = 40.0;  // and no more than lets this shaker reach the limit.
-constexpr double kContradiction = 0.67;     // Of what the device saw per drive before.
-constexpr double kConfirmedWithin = 0.1;    // Two looks that agree.
-constexpr double kConfirmingShare = 0.5;    // Of the drive, for the second of them.
+constexpr double kSurelySeen = 1.5;  // Times where a device is seen.
+constexpr double kBlindShare = 0.1;  // Of the drive limit, while nothing was seen at all,
+constexpr double kBlindGain =
+    40.0;  // and no more than lets a shaker of so many (m/s^2)/V reach the limit.
+constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
+constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
+constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
 constexpr std::uint32_t kMaxTries = 12;
 constexpr double kLooseShare = 0.01;     // Repeats that differ by more are taken again.
 constexpr double kDistortedShare = 0.1;  // An error above,
@@ -431,7 +432,7 @@ void Sweep::raise_drive(const Reading& reference, const Reading& device) noexcep
     return;
   }
   const double limit_v = std::min(kBlindShare * results_.settings.drive_limit_v,
-                                  results_.settings.acceleration_limit_mps2 / kBlind_mps2_per_v);
+                                  results_.settings.acceleration_limit_mps2 / kBlindGain);
   const double permitted_v = work_.drive_.max_amplitude_v(work_.target_.frequency_hz);
   const double most_v = limit_v < permitted_v ? limit_v : permitted_v;
   if (work_.drive_.amplitude_v() >= most_v) {
@@ -494,8 +495,7 @@ Status Sweep::disturbance_of(const Reading& reference, const Reading& device) co
   const double device_v = device.fit.amplitude_v > flat_v ? device.fit.amplitude_v : flat_v;
   const double of_device = distortion_of(device.fit.residual_std_v,
                                          results_.inputs.silent_device.noise_v, device_v, samples);
-  // A drive of few steps is no good sine; its point is flagged.
-  // Rounding to few steps has harmonics, too.
+  // A drive of few steps is no good sine, as rounding has harmonics; its point is flagged.
   const bool is_of_steps = work_.drive_.amplitude_v() < kManySteps * few_steps_v();
   const double most = is_level_little() || is_of_steps ? 2.0 * kDistortedShare : kDistortedShare;
   if (reference.distortion > most || of_device > most) {

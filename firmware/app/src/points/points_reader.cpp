@@ -99,10 +99,9 @@ bool contains(Span<const char> text, char wanted) noexcept {
   return false;
 }
 
-/// "nan", "inf", "infinity", with or without a sign: words that elsewhere stand for numbers. Of a
-/// field that is not empty.
+/// "nan", "inf", "infinity", with or without a sign: words that elsewhere stand for numbers.
 bool is_word_for_no_number(Span<const char> field) noexcept {
-  const bool has_sign = field[0] == '-' || field[0] == '+';
+  const bool has_sign = !field.empty() && (field[0] == '-' || field[0] == '+');
   const Span<const char> word = has_sign ? field.from(1) : field;
   return (word.size() >= 3 && starts_with(word, "nan")) ||
          (word.size() == 3 && starts_with(word, "inf")) ||

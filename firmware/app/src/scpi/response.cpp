@@ -50,9 +50,9 @@ ScientificText shortest_text(double magnitude) noexcept {
   constexpr double kSmallestNormal = std::numeric_limits<double>::min();
   ScientificText number = {};
   int digits = magnitude < kSmallestNormal ? 1 : kSafeDigits;
-  for (;; ++digits) {
+  for (; digits <= kExactDigits; ++digits) {
     number.length = format_scientific(magnitude, digits - 1, number.text);
-    if (digits == kExactDigits || reads_as(number, magnitude)) {
+    if (reads_as(number, magnitude)) {
       break;
     }
     // Below a power of two the numbers lie closer than above it: the next digits up may do.

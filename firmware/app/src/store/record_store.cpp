@@ -34,9 +34,9 @@ std::uint32_t taken(const std::uint8_t* from) noexcept {
   return value;
 }
 
-// Right also where the count has gone round. No two copies are of the same generation.
+// Right also where the count has gone round.
 bool is_newer(std::uint32_t generation, std::uint32_t than) noexcept {
-  return generation - than < 0x80000000;
+  return generation != than && generation - than < 0x80000000;
 }
 
 // Never written. Memory that nobody has erased yet may hold zeros.
