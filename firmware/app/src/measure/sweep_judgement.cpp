@@ -14,10 +14,9 @@ constexpr double kWeakSigmas = 8.0;
 constexpr double kMostLeak = 0.015;  // Of percent with k = 2: three standard uncertainties.
 constexpr double kLevelTolerance = 0.05;
 constexpr double kRaise = 8.0;
-constexpr double kSurelySeen = 1.5;  // Times where a device is seen.
-constexpr double kBlindShare = 0.1;  // Of the drive limit, while nothing was seen at all,
-constexpr double kBlindGain =
-    40.0;  // and no more than lets a shaker of so many (m/s^2)/V reach the limit.
+constexpr double kSurelySeen = 1.5;       // Times where a device is seen.
+constexpr double kBlindShare = 0.1;       // Of the drive limit, while nothing was seen at all,
+constexpr double kBlindGain = 40.0;       // and to the limit with a shaker of so many (m/s^2)/V.
 constexpr double kContradiction = 0.67;   // Of what the device saw per drive before.
 constexpr double kConfirmedWithin = 0.1;  // Two looks that agree.
 constexpr double kConfirmingShare = 0.5;  // Of the drive, for the second of them.
